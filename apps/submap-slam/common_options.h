@@ -1,0 +1,58 @@
+#pragma once
+
+#include <tbb/global_control.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace submap_slam {
+
+/** Exit codes of the program. */
+enum ExitCode : int {
+  kSuccess = 0,
+  kFailure = 1,       ///< could not do it: disk full, out of memory, …
+  kBadInput = 2,      ///< wrong option, configuration, plugin or file
+  kDamagedLog = 3,    ///< the log is damaged; results of the part before the damage are written
+  kInterrupted = 130  ///< Ctrl-C; what was complete is written
+};
+
+/** What the user said about the configuration; empty members keep what the ini file says. */
+struct ConfigurationOptions {
+  std::string config_file;            ///< empty: default.ini of the installation
+  std::vector<std::string> settings;  ///< "section.key=value"
+  std::vector<std::string> plugins;   ///< files
+  std::optional<uint64_t> seed;
+  std::string from, to, sensor_labels;
+};
+
+/** How a subcommand runs. */
+struct RunOptions {
+  ConfigurationOptions configuration;
+  int threads = 0;  ///< 0: as many as the machine has
+  bool quiet = false, overwrite = false;
+};
+
+void addPluginOption(CLI::App& command, ConfigurationOptions& options);
+
+/** -c, --set, -p and --seed. */
+void addConfigurationOptions(CLI::App& command, ConfigurationOptions& options);
+
+/** --from, --to and --sensor. */
+void addLogOptions(CLI::App& command, ConfigurationOptions& options);
+
+/** --threads, --quiet and --overwrite. */
+void addRunOptions(CLI::App& command, RunOptions& options);
+
+/** Limits the number of threads while it lives; 0: as many as the machine has. */
+tbb::global_control limitThreads(int threads);
+
+/** Adds positionals `[CONFIG.ini] LOG` in either order, as MRPT's programs take them. */
+void addLogPositional(CLI::App& command, std::vector<std::string>& files);
+
+/** The log among the positionals; an ini file among them becomes the configuration. */
+std::string takeLog(const std::vector<std::string>& files, ConfigurationOptions& options);
+
+}  // namespace submap_slam

@@ -1,0 +1,118 @@
+#include "configuration.h"
+
+#include <fmt/format.h>
+#include <mrpt/config/CConfigFile.h>
+#include <submap_slam/core/errors.h>
+#include <submap_slam/core/plugins.h>
+#include <submap_slam/core/version.h>
+#include <submap_slam/rawlog/resume_state.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <sstream>
+
+#include "installation.h"
+
+namespace submap_slam {
+namespace {
+
+/** The words of a list separated by commas or blanks. */
+std::vector<std::string> splitList(std::string text) {
+  std::replace(text.begin(), text.end(), ',', ' ');
+  std::istringstream words(text);
+  return {std::istream_iterator<std::string>(words), {}};
+}
+
+/** The parameters that the submaps depend on. */
+void describeSubmapParameters(ParameterTable& table, Configuration& config) {
+  describe(table, config.reader);
+  describe(table, config.stretches);
+  describe(table, config.mapper);
+  table.section("run", "The run as a whole");
+  table.add("seed", config.seed, "Seed of all random streams; equal seeds give equal results");
+}
+
+void describeJoiningParameters(ParameterTable& table, Configuration& config) {
+  table.section("joining", "How submaps become one map");
+  table.add("chain", config.joining.chain,
+            "Names of the joiners that run one after the other, separated by commas; empty: only the chain "
+            "of end poses");
+  table.add(
+      "map_resolution", config.joining.map_resolution, "m", {0, 10},
+      "Cell size of the global map where a joiner leaves its making to the program; 0: that of the submaps");
+  table.section("plugins", "Shared libraries with joiners");
+  table.add("load", config.plugins, "Plugin files to load besides the installed ones, separated by commas");
+  for (const auto& joiner : config.joiners) joiner->describe(table);
+}
+
+/** The plugins of a run must be loaded before the parameters can be read, as they bring parameters
+ * themselves. */
+std::vector<std::string> pluginFiles(const std::string& ini_file, const ConfigurationOptions& options) {
+  std::string list;
+  if (std::filesystem::is_regular_file(ini_file))
+    list = mrpt::config::CConfigFile(ini_file).read_string("plugins", "load", "");
+  const std::string key = "plugins.load=";
+  for (const auto& setting : options.settings)
+    if (setting.compare(0, key.size(), key) == 0) list = setting.substr(key.size());
+  std::vector<std::string> files = splitList(list);
+  files.insert(files.end(), options.plugins.begin(), options.plugins.end());
+  return files;
+}
+
+}  // namespace
+
+Configuration::Configuration(const std::vector<std::string>& plugin_files) {
+  for (const auto& folder : pluginFolders()) loadPluginFolder(folder);
+  for (const auto& file : plugin_files) loadPlugin(file);
+  plugins = fmt::format("{}", fmt::join(plugin_files, ","));
+  joiners = availableJoiners();
+  describeSubmapParameters(table, *this);
+  submap_parameters_ = table.parameters().size();
+  describeJoiningParameters(table, *this);
+}
+
+JoinerChain Configuration::joinerChain() const {
+  JoinerChain chain;
+  for (const auto& name : splitList(joining.chain)) {
+    const auto found =
+        std::find_if(joiners.begin(), joiners.end(), [&](const auto& j) { return j->name() == name; });
+    if (found == joiners.end()) {
+      std::vector<std::string> names;
+      for (const auto& joiner : joiners) names.push_back(joiner->name());
+      throw PluginError(fmt::format("[joining] chain: no plugin offers the joiner '{}'; available: {}", name,
+                                    names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+    }
+    (*found)->validate();
+    chain.push_back(*found);
+  }
+  return chain;
+}
+
+std::string Configuration::submapFingerprint() const {
+  std::string text = version();
+  for (std::size_t i = 0; i < submap_parameters_; ++i) {
+    const Parameter& p = table.parameters()[i];
+    text += fmt::format("\n{}.{}={}", p.section, p.key, p.value());
+  }
+  return textHash(text);
+}
+
+std::unique_ptr<Configuration> loadConfiguration(const ConfigurationOptions& options) {
+  const std::string ini_file =
+      options.config_file.empty() ? defaultIniFile().value_or("") : options.config_file;
+  const auto plugin_files = pluginFiles(ini_file, options);
+  auto config = std::make_unique<Configuration>(plugin_files);
+
+  if (!ini_file.empty()) config->table.loadIni(ini_file);
+  for (const auto& setting : options.settings) config->table.set(setting);
+  config->plugins = fmt::format("{}", fmt::join(plugin_files, ","));
+
+  if (options.seed) config->seed = *options.seed;
+  if (!options.from.empty()) config->table.set("reader", "from", options.from);
+  if (!options.to.empty()) config->table.set("reader", "to", options.to);
+  if (!options.sensor_labels.empty()) config->table.set("reader", "sensor_labels", options.sensor_labels);
+  return config;
+}
+
+}  // namespace submap_slam

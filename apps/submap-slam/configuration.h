@@ -1,0 +1,58 @@
+#pragma once
+
+#include <submap_slam/core/parameters.h>
+#include <submap_slam/core/submap_joiner.h>
+#include <submap_slam/mapping/grid_mapper.h>
+#include <submap_slam/mapping/stretch_splitter.h>
+#include <submap_slam/rawlog/rawlog_reader.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common_options.h"
+
+namespace submap_slam {
+
+using JoinerChain = std::vector<std::shared_ptr<SubmapJoiner>>;
+
+/** Section [joining]. */
+struct JoiningParams {
+  std::string chain = "grid_gauss_newton";  ///< names of joiners, in the order in which they run
+  double map_resolution = 0;                ///< m per cell of the global map; 0: that of the submaps
+};
+
+/** Every parameter of a run, with one table that loads, checks, writes and documents them all. */
+class Configuration {
+ public:
+  /** The defaults. Loads the installed plugins and `plugin_files`; each joiner adds its own section. */
+  explicit Configuration(const std::vector<std::string>& plugin_files = {});
+  Configuration(const Configuration&) = delete;
+  Configuration& operator=(const Configuration&) = delete;
+
+  /** The joiners named in [joining] chain, configured; throws PluginError for a name that no plugin offers
+   * and ConfigError if a joiner's parameters contradict each other. */
+  JoinerChain joinerChain() const;
+
+  /** Fingerprint of everything that the submaps depend on besides the log: parameters, seed and version. */
+  std::string submapFingerprint() const;
+
+  ReaderParams reader;
+  StretchParams stretches;
+  GridMapperParams mapper;
+  uint64_t seed = 1;
+  JoiningParams joining;
+  std::string plugins;   ///< [plugins] load, files
+  JoinerChain joiners;   ///< all that are available, sorted by name
+  ParameterTable table;  ///< points into the members above and into the joiners
+
+ private:
+  std::size_t submap_parameters_;  ///< the first ones of the table are those that the submaps depend on
+};
+
+/** The configuration that the user asked for: defaults, then the ini file, then the options. Throws
+ * ConfigError, InputError or PluginError. */
+std::unique_ptr<Configuration> loadConfiguration(const ConfigurationOptions& options);
+
+}  // namespace submap_slam

@@ -1,0 +1,119 @@
+#include <fmt/format.h>
+#include <submap_slam/core/errors.h>
+#include <submap_slam/eval/relations.h>
+#include <submap_slam/eval/trajectory_error.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands.h"
+
+namespace submap_slam {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct EvalOptions {
+  std::string trajectory, relations, reference;
+  RelationsOptions filter;
+  double split_s = 60;
+  bool json = false;
+};
+
+Json toJson(const ErrorStatistics& e) {
+  return {{"mean", e.mean},
+          {"std", e.std},
+          {"rmse", e.rmse},
+          {"median", e.median},
+          {"percentile_95", e.percentile_95},
+          {"max", e.max}};
+}
+
+Json toJson(const RelationsResult& r) {
+  return {{"total", r.total},
+          {"used", r.used},
+          {"skipped", r.skipped},
+          {"filtered", r.filtered},
+          {"translation_m", toJson(r.translation_m)},
+          {"rotation_deg", toJson(r.rotation_deg)}};
+}
+
+Json toJson(const TrajectoryError& e) {
+  return {{"count", e.translation_m.count},
+          {"translation_m", toJson(e.translation_m)},
+          {"rotation_deg", toJson(e.rotation_deg)}};
+}
+
+/** The relations within the limits that the user gave. */
+std::vector<Relation> filtered(const std::vector<Relation>& relations, const RelationsOptions& limits) {
+  std::vector<Relation> kept;
+  for (const auto& relation : relations) {
+    const double dt = std::abs(relation.t2 - relation.t1);
+    if (dt >= limits.min_dt_s && dt <= limits.max_dt_s) kept.push_back(relation);
+  }
+  return kept;
+}
+
+Json evaluateAgainstRelations(const EvalOptions& options, const TimedTrajectory& trajectory) {
+  const auto relations = filtered(readRelations(options.relations), options.filter);
+  const RelationsReport report = evaluateRelationsSplit(relations, trajectory, options.split_s);
+  if (report.all.used == 0)
+    throw InputError(fmt::format("{}: no relation that {} covers; are they of the same log?",
+                                 options.relations, options.trajectory));
+  if (!options.json) fmt::print("{}", formatTable(report));
+  return {{"all", toJson(report.all)}, {"local", toJson(report.local)}, {"global", toJson(report.global)}};
+}
+
+Json evaluateAgainstReference(const EvalOptions& options, const TimedTrajectory& trajectory) {
+  const auto pairs = associate(readTum(options.reference), trajectory);
+  if (pairs.empty())
+    throw InputError(fmt::format("{}: no pose at a time that {} covers; are they of the same log?",
+                                 options.reference, options.trajectory));
+  const TrajectoryError absolute = absoluteTrajectoryError(pairs), relative = relativePoseError(pairs);
+  if (!options.json) fmt::print("{}", formatTable(absolute, relative));
+  return {{"absolute", toJson(absolute)}, {"relative", toJson(relative)}};
+}
+
+int runEval(const EvalOptions& options) {
+  if (options.relations.empty() && options.reference.empty())
+    throw ConfigError("eval: give --relations R.relations or --reference T.tum");
+  const TimedTrajectory trajectory = readTum(options.trajectory);
+  Json result;
+  if (!options.relations.empty()) result["relations"] = evaluateAgainstRelations(options, trajectory);
+  if (!options.reference.empty()) result["reference"] = evaluateAgainstReference(options, trajectory);
+  if (options.json) fmt::print("{}\n", result.dump(2));
+  return kSuccess;
+}
+
+}  // namespace
+
+void addEvalCommand(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<EvalOptions>();
+  CLI::App* command = app.add_subcommand("eval", "Errors of a trajectory against relations or a reference");
+  command->add_option("trajectory", options->trajectory, "The trajectory to judge")
+      ->required()
+      ->type_name("TRAJECTORY.tum");
+  command->add_option("--relations", options->relations, "Known relative poses: t1 t2 x y z roll pitch yaw")
+      ->type_name("R.relations")
+      ->group("Truth");
+  command->add_option("--reference", options->reference, "Reference trajectory in TUM format")
+      ->type_name("T.tum")
+      ->group("Truth");
+  command->add_option("--min-dt", options->filter.min_dt_s, "Only relations at least this long (s)")
+      ->type_name("S")
+      ->group("Relations");
+  command->add_option("--max-dt", options->filter.max_dt_s, "Only relations at most this long (s)")
+      ->type_name("S")
+      ->group("Relations");
+  command->add_option("--split", options->split_s, "Limit between local and global relations (s)")
+      ->type_name("S")
+      ->capture_default_str()
+      ->group("Relations");
+  command->add_flag("--json", options->json, "Print JSON instead of tables");
+  command->footer("Example: submap-slam eval out/trajectory.tum --relations intel.relations");
+  command->callback([options, &exit_code] { exit_code = runEval(*options); });
+}
+
+}  // namespace submap_slam

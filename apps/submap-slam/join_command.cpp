@@ -1,0 +1,45 @@
+#include <memory>
+
+#include "commands.h"
+#include "configuration.h"
+#include "pipeline.h"
+#include "summary.h"
+
+namespace submap_slam {
+namespace {
+
+struct JoinOptions {
+  RunOptions run;
+  std::string submap_file, folder;
+};
+
+int runJoin(const JoinOptions& options) {
+  const auto config = loadConfiguration(options.run.configuration);
+  const auto limit = limitThreads(options.run.threads);
+  Reporter reporter(options.run.quiet);
+
+  const RunSummary summary =
+      joinFile(options.submap_file, options.folder, options.run.overwrite, *config, reporter);
+  reporter.note(mapSummary(summary, options.folder));
+  return exitCodeOf(summary);
+}
+
+}  // namespace
+
+void addJoinCommand(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<JoinOptions>();
+  CLI::App* command = app.add_subcommand("join", "Joins a file of submaps and writes all results");
+  command->add_option("submaps", options->submap_file, "Submaps that `build` or `map` wrote")
+      ->required()
+      ->type_name("SUBMAPS.rawlog");
+  command->add_option("-o,--output", options->folder, "Folder for the results; must be new or empty")
+      ->required()
+      ->type_name("OUTDIR");
+  addConfigurationOptions(*command, options->run.configuration);
+  addRunOptions(*command, options->run);
+  command->footer(
+      "Example: submap-slam join intel_submaps.rawlog -o intel --set joining.chain=grid_gauss_newton");
+  command->callback([options, &exit_code] { exit_code = runJoin(*options); });
+}
+
+}  // namespace submap_slam

@@ -1,0 +1,76 @@
+/** submap-slam: makes large, accurate 2D maps from MRPT rawlogs by building and joining submaps. */
+#include <fmt/format.h>
+#include <submap_slam/core/errors.h>
+#include <submap_slam/core/version.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "commands.h"
+#include "stop_signal.h"
+
+namespace {
+
+using namespace submap_slam;
+
+/** Parses the command line and does what it says. */
+int run(CLI::App& app, int argc, char** argv) {
+  int exit_code = kSuccess;
+  bool list_joiners = false;
+  ConfigurationOptions options;
+
+  app.set_version_flag("--version", std::string("submap-slam ") + version());
+  app.add_flag("--list-joiners", list_joiners, "List the joiners that the plugins offer");
+  addPluginOption(app, options);
+  app.require_subcommand(0, 1);
+  app.footer(
+      "Example: submap-slam map LOG.rawlog -o out     then look at out/map.png\n"
+      "Help on a subcommand: submap-slam map --help");
+
+  addMapCommand(app, exit_code);
+  addBuildCommand(app, exit_code);
+  addJoinCommand(app, exit_code);
+  addEvalCommand(app, exit_code);
+  addCheckCommand(app, exit_code);
+  addInfoCommand(app, exit_code);
+  addParametersCommand(app, exit_code);
+
+  app.parse(argc, argv);
+  if (list_joiners) {
+    listJoiners(options.plugins);
+  } else if (app.get_subcommands().empty()) {
+    throw CLI::RequiredError("a subcommand (see submap-slam --help)");
+  }
+  return exit_code;
+}
+
+int reportError(std::string text, int exit_code) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  fmt::print(stderr, "submap-slam: error: {}\n", text);
+  return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Makes large, accurate 2D maps from MRPT rawlogs by building and joining submaps.",
+               "submap-slam");
+  try {
+    catchStopSignals();
+    return run(app, argc, argv);
+  } catch (const CLI::Success& e) {  // --help, --version
+    return app.exit(e);
+  } catch (const CLI::ParseError& e) {
+    return reportError(e.what(), kBadInput);
+  } catch (const InputError& e) {
+    return reportError(e.what(), kBadInput);
+  } catch (const ConfigError& e) {
+    return reportError(e.what(), kBadInput);
+  } catch (const PluginError& e) {
+    return reportError(e.what(), kBadInput);
+  } catch (const Interrupted& e) {
+    return reportError(e.what(), kInterrupted);
+  } catch (const std::exception& e) {
+    return reportError(e.what(), kFailure);
+  }
+}

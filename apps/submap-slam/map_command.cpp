@@ -1,0 +1,49 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "commands.h"
+#include "configuration.h"
+#include "pipeline.h"
+#include "summary.h"
+
+namespace submap_slam {
+namespace {
+
+struct MapOptions {
+  RunOptions run;
+  std::vector<std::string> files;
+  std::string folder;
+};
+
+int runMap(MapOptions& options) {
+  const std::string log = takeLog(options.files, options.run.configuration);
+  const auto config = loadConfiguration(options.run.configuration);
+  const auto limit = limitThreads(options.run.threads);
+  Reporter reporter(options.run.quiet);
+
+  const RunSummary summary = mapRawlog(log, options.folder, options.run.overwrite, *config, reporter);
+  reporter.note(mapSummary(summary, options.folder));
+  return exitCodeOf(summary);
+}
+
+}  // namespace
+
+void addMapCommand(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<MapOptions>();
+  CLI::App* command =
+      app.add_subcommand("map", "Makes a map from a rawlog: builds submaps, joins them, writes all results");
+  addLogPositional(*command, options->files);
+  command->add_option("-o,--output", options->folder, "Folder for the results; must be new or empty")
+      ->required()
+      ->type_name("OUTDIR");
+  addConfigurationOptions(*command, options->run.configuration);
+  addLogOptions(*command, options->run.configuration);
+  addRunOptions(*command, options->run);
+  command->footer(
+      "A run that was stopped goes on when the same command is given again.\n"
+      "Example: submap-slam map intel.rawlog -o intel --set submaps.max_distance=15");
+  command->callback([options, &exit_code] { exit_code = runMap(*options); });
+}
+
+}  // namespace submap_slam

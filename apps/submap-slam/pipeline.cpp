@@ -1,0 +1,199 @@
+#include "pipeline.h"
+
+#include <fmt/format.h>
+#include <submap_slam/core/errors.h>
+#include <submap_slam/core/version.h>
+#include <submap_slam/mapping/grid_mapper.h>
+#include <submap_slam/output/json_file.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_pipeline.h>
+
+#include <cmath>
+#include <memory>
+
+#include "metrics.h"
+#include "results.h"
+#include "run_files.h"
+#include "stage_timer.h"
+#include "stop_signal.h"
+
+namespace submap_slam {
+namespace {
+
+/** A stretch on its way through the stages. */
+struct Job {
+  Stretch stretch;
+  GridSubmaps submaps;
+  double fraction_read = 0;
+};
+using JobPtr = std::shared_ptr<Job>;
+
+void reportLog(const StretchSource& source, Reporter& reporter) {
+  const LogReport& report = source.report();
+  reporter.log(fmt::format("log: {} frames, {:.1f} s, {:.1f} m by odometry", report.frames,
+                           report.duration_s(), report.path_length_m));
+  for (const auto& finding : report.findings) {
+    if (finding.severity == Severity::kInfo) {
+      reporter.log(finding.text);
+    } else {
+      reporter.warning(finding.text);
+    }
+  }
+}
+
+/** Figures that every run ends with. */
+void addRunMetrics(Metrics& metrics, const Configuration& config, const Reporter& reporter,
+                   const StageTimer& timer) {
+  addTime(metrics, "", timer);
+  metrics["peak_memory_mb"] = peakMemoryMb();
+  metrics["seed"] = config.seed;
+  metrics["version"] = version();
+  metrics["warnings"] = reporter.warnings();
+}
+
+/** Joins and writes everything but metrics.json. */
+void joinAndWrite(const GridSubmaps& submaps, const JoinerChain& joiners, const OutputDirectory& out,
+                  const Configuration& config, Reporter& reporter, Metrics& metrics) {
+  const StageTimer join_timer;
+  reporter.log(fmt::format("{} submaps", submaps.size()));
+  const JoinedMap joined = joinSubmaps(submaps, joiners, config.joining.map_resolution, reporter);
+  addJoinMetrics(metrics, submaps, joined);
+  addTime(metrics, "join_", join_timer);
+
+  const StageTimer write_timer;
+  writeResults(out, submaps, joined);
+  writeRunRecord(out, config, reporter.logLines());
+  addTime(metrics, "write_", write_timer);
+}
+
+void checkFrames(const SubmapJoiner& joiner, const JoinedMap& joined, std::size_t submaps) {
+  if (joined.frames.size() != submaps)
+    throw PluginError(fmt::format("joiner {}: gave {} frames for {} submaps", joiner.name(),
+                                  joined.frames.size(), submaps));
+  for (const auto& frame : joined.frames) {
+    if (!std::isfinite(frame.mean.x()) || !std::isfinite(frame.mean.y()) || !std::isfinite(frame.mean.phi()))
+      throw PluginError(fmt::format("joiner {}: gave a frame that is not finite", joiner.name()));
+  }
+}
+
+}  // namespace
+
+RunSummary mapRawlog(const std::string& log, const std::string& folder, bool overwrite,
+                     const Configuration& config, Reporter& reporter) {
+  const StageTimer timer;
+  RunSummary summary;
+  const JoinerChain joiners = config.joinerChain();  // a wrong name is refused before hours of mapping
+  StretchSource source(log, config.reader, config.stretches);
+  const OutputDirectory out = openFolder(folder, overwrite);
+
+  SubmapLogWriter writer = openSubmapFile(out.file(kSubmapFile), log, config, overwrite, reporter);
+  const RbpfGridMapper mapper(config.mapper, config.seed);
+  summary.interrupted = !buildSubmaps(source, mapper, writer, reporter);
+  addTime(summary.metrics, "build_", timer);
+  reportLog(source, reporter);
+  summary.damaged = !source.damage().empty();
+  if (summary.interrupted) return summary;
+
+  addLogMetrics(summary.metrics, source.report());
+  joinAndWrite(readSubmaps(out.file(kSubmapFile)), joiners, out, config, reporter, summary.metrics);
+  summary.interrupted = stopRequested();
+  addRunMetrics(summary.metrics, config, reporter, timer);
+  writeJson(out.file(kMetricsFile), summary.metrics);
+  return summary;
+}
+
+RunSummary buildRawlog(const std::string& log, const std::string& submap_file, bool overwrite,
+                       const Configuration& config, Reporter& reporter) {
+  const StageTimer timer;
+  RunSummary summary;
+  StretchSource source(log, config.reader, config.stretches);
+  if (!overwrite) refuseFinished(submap_file);
+  SubmapLogWriter writer = openSubmapFile(submap_file, log, config, overwrite, reporter);
+  const RbpfGridMapper mapper(config.mapper, config.seed);
+  summary.interrupted = !buildSubmaps(source, mapper, writer, reporter);
+  reportLog(source, reporter);
+  summary.damaged = !source.damage().empty();
+  addLogMetrics(summary.metrics, source.report());
+  summary.metrics["submaps"] = writer.state().submaps_done;
+  addRunMetrics(summary.metrics, config, reporter, timer);
+  return summary;
+}
+
+RunSummary joinFile(const std::string& submap_file, const std::string& folder, bool overwrite,
+                    const Configuration& config, Reporter& reporter) {
+  const StageTimer timer;
+  RunSummary summary;
+  const JoinerChain joiners = config.joinerChain();
+  const RecoveredSubmaps read = readUsableSubmaps(submap_file);
+  const OutputDirectory out(folder, overwrite);
+  summary.damaged = !read.damage.empty();
+  if (summary.damaged) reporter.warning(read.damage + "; the submaps before it are joined");
+  joinAndWrite(read.submaps, joiners, out, config, reporter, summary.metrics);
+  summary.interrupted = stopRequested();
+  addRunMetrics(summary.metrics, config, reporter, timer);
+  writeJson(out.file(kMetricsFile), summary.metrics);
+  return summary;
+}
+
+bool buildSubmaps(StretchSource& source, const LocalMapper& mapper, SubmapLogWriter& writer,
+                  Reporter& reporter) {
+  using tbb::filter_mode;
+  const uint64_t built_before = writer.state().stretches_done;
+  bool stopped = false;
+  std::size_t frames_built = 0;
+
+  const auto read = [&](tbb::flow_control& flow) -> JobPtr {
+    while (!(stopped = stopRequested())) {
+      auto stretch = source.next();
+      if (!stretch) break;
+      if (stretch->index < built_before) continue;  // an earlier run did it
+      return std::make_shared<Job>(Job{std::move(*stretch), {}, source.fractionRead()});
+    }
+    flow.stop();
+    return nullptr;
+  };
+  const auto build = [&](JobPtr job) {
+    job->submaps = mapper.map(job->stretch);
+    return job;
+  };
+  const auto write = [&](JobPtr job) {
+    auto id = static_cast<uint32_t>(writer.state().submaps_done);
+    for (const auto& submap : job->submaps) submap->id = id++;
+    writer.appendStretch(job->submaps);
+    frames_built += job->stretch.ownFrames();
+    reporter.progress("building submaps", job->fraction_read, frames_built, "scans");
+  };
+
+  const std::size_t threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  tbb::parallel_pipeline(2 * threads,
+                         tbb::make_filter<void, JobPtr>(filter_mode::serial_in_order, read) &
+                             tbb::make_filter<JobPtr, JobPtr>(filter_mode::parallel, build) &
+                             tbb::make_filter<JobPtr, void>(filter_mode::serial_in_order, write));
+  if (!stopped) writer.finish();
+  return !stopped;
+}
+
+JoinedMap joinSubmaps(const GridSubmaps& submaps, const JoinerChain& joiners, double map_resolution,
+                      Reporter& reporter) {
+  JoinedMap joined = chainSubmaps(submaps);
+  for (const auto& joiner : joiners) {
+    const auto progress = [&](double fraction, const std::string&) {
+      reporter.progress("joining with " + joiner->name(), fraction);
+      return !stopRequested();
+    };
+    joined = joiner->join(submaps, joined, progress);
+    checkFrames(*joiner, joined, submaps.size());
+    const std::string outcome =
+        fmt::format("{}: {} ({}), objective {}, {} iterations", joiner->name(), toString(joined.status),
+                    joined.reason, joined.objective, joined.iterations.size());
+    if (joined.status == JoinStatus::kFailed) {
+      reporter.warning(outcome);
+    } else {
+      reporter.log(outcome);
+    }
+  }
+  if (joined.map.observedCells() == 0) joined.map = fuseEvidence(submaps, joined.frames, map_resolution);
+  return joined;
+}
+
+}  // namespace submap_slam

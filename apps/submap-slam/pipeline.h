@@ -1,0 +1,52 @@
+/** The whole way from a rawlog to a map. */
+#pragma once
+
+#include <submap_slam/core/joined_map.h>
+#include <submap_slam/core/local_mapper.h>
+#include <submap_slam/output/output_directory.h>
+#include <submap_slam/rawlog/submap_log.h>
+
+#include <string>
+
+#include "configuration.h"
+#include "metrics.h"
+#include "reporter.h"
+#include "stretch_source.h"
+
+namespace submap_slam {
+
+/** How a run ended and what it says of itself. */
+struct RunSummary {
+  Metrics metrics;           ///< what metrics.json holds
+  bool damaged = false;      ///< the log is damaged; the part before the damage was used
+  bool interrupted = false;  ///< a stop signal came
+};
+
+/** Maps a rawlog: reads frames, cuts them into stretches, builds their submaps, joins them, writes all
+ * results to a folder.
+ *
+ * A run that was stopped or killed is continued when it is started again; its results have the same bytes as
+ * those of a run that never stopped, also for any number of threads (metrics.json, which holds times,
+ * excepted).
+ * @param overwrite start anew in a folder that holds something */
+RunSummary mapRawlog(const std::string& log, const std::string& folder, bool overwrite,
+                     const Configuration& config, Reporter& reporter);
+
+/** The first half of mapRawlog: submaps of a rawlog into a file. */
+RunSummary buildRawlog(const std::string& log, const std::string& submap_file, bool overwrite,
+                       const Configuration& config, Reporter& reporter);
+
+/** The second half of mapRawlog: from a file of submaps to all results. */
+RunSummary joinFile(const std::string& submap_file, const std::string& folder, bool overwrite,
+                    const Configuration& config, Reporter& reporter);
+
+/** Builds the submaps of all stretches that `writer` does not have yet, in parallel; each is on disk before
+ * the progress goes on. Memory does not grow with the log. Returns false if a stop signal ended it early. */
+bool buildSubmaps(StretchSource& source, const LocalMapper& mapper, SubmapLogWriter& writer,
+                  Reporter& reporter);
+
+/** Runs the joiners one after the other, from the chain of end poses, and makes the global map. */
+JoinedMap joinSubmaps(const GridSubmaps& submaps, const JoinerChain& joiners, double map_resolution,
+                      Reporter& reporter);
+
+}  // namespace submap_slam

@@ -1,0 +1,59 @@
+#include "summary.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "run_files.h"
+
+namespace submap_slam {
+namespace {
+
+std::string inFolder(const std::string& folder, const char* file) {
+  return (std::filesystem::path(folder) / file).string();
+}
+
+std::string resources(const Metrics& m) {
+  return fmt::format("{:.1f} s, {:.1f} s CPU, {:.0f} MB", m["wall_s"].get<double>(), m["cpu_s"].get<double>(),
+                     m["peak_memory_mb"].get<double>());
+}
+
+std::string howToGoOn(const std::string& submap_file) {
+  return fmt::format(
+      "stopped; what was complete is in {}\ngive the same command again to go on, or join what is there:"
+      " submap-slam join {} -o OUTDIR",
+      submap_file, submap_file);
+}
+
+}  // namespace
+
+std::string mapSummary(const RunSummary& summary, const std::string& folder) {
+  const Metrics& m = summary.metrics;
+  if (!m.contains("join_status")) return howToGoOn(inFolder(folder, kSubmapFile));
+  std::string text = fmt::format("{} submaps, {} nodes, {} frames\n", m["submaps"].get<int>(),
+                                 m["nodes"].get<int>(), m["frames"].get<int>());
+  text += fmt::format("joined: {} ({}), {} of {} constraints accepted\n", m["join_status"].get<std::string>(),
+                      m["join_reason"].get<std::string>(), m["constraints_accepted"].get<int>(),
+                      m["constraints_accepted"].get<int>() + m["constraints_rejected"].get<int>());
+  text += resources(m) + "\n";
+  if (summary.interrupted)
+    text += fmt::format(
+        "stopped while joining, the map is the best until then; to join again: submap-slam join {} -o "
+        "OUTDIR\n",
+        inFolder(folder, kSubmapFile));
+  return text + "map: " + inFolder(folder, "map.png");
+}
+
+std::string buildSummary(const RunSummary& summary, const std::string& submap_file) {
+  if (summary.interrupted) return howToGoOn(submap_file);
+  const Metrics& m = summary.metrics;
+  return fmt::format("{} submaps from {} frames\n{}\nsubmaps: {}", m["submaps"].get<int>(),
+                     m["frames"].get<int>(), resources(m), submap_file);
+}
+
+ExitCode exitCodeOf(const RunSummary& summary) {
+  if (summary.interrupted) return kInterrupted;
+  return summary.damaged ? kDamagedLog : kSuccess;
+}
+
+}  // namespace submap_slam

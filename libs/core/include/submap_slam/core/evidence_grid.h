@@ -1,0 +1,50 @@
+#pragma once
+
+#include <mrpt/containers/CDynamicGrid.h>
+#include <mrpt/maps/COccupancyGridMap2D.h>
+#include <mrpt/serialization/CArchive.h>
+
+namespace submap_slam {
+
+/** Un-saturated occupancy evidence on a regular grid.
+ *
+ * Cell (cx, cy) has its centre at (x_min + (cx + ½) r, y_min + (cy + ½) r). `log_odds` is the **sum** of the
+ * log-odds of all observations of the cell, positive = occupied (MRPT's own grids have positive = free);
+ * `hits` is how many observations there were (fractions arise from bilinear splatting). A cell with hits = 0
+ * is unknown and has log_odds = 0. Both grids always have the same extent.
+ */
+struct EvidenceGrid {
+  mrpt::containers::CDynamicGrid<float> log_odds;
+  mrpt::containers::CDynamicGrid<float> hits;
+
+  /** An empty (1 × 1 cell) grid. */
+  EvidenceGrid();
+
+  /** All cells unknown; limits in metres are rounded outwards to multiples of the resolution (m per cell). */
+  EvidenceGrid(double x_min, double x_max, double y_min, double y_max, double resolution);
+
+  double resolution() const { return log_odds.getResolution(); }
+  std::size_t sizeX() const { return log_odds.getSizeX(); }
+  std::size_t sizeY() const { return log_odds.getSizeY(); }
+  std::size_t cells() const { return sizeX() * sizeY(); }
+
+  /** Number of cells with hits > 0. */
+  std::size_t observedCells() const;
+
+  /** The smallest grid with the same lattice that holds every observed cell. */
+  EvidenceGrid cropped() const;
+
+  /** MRPT's grid: the evidence sum clamped to MRPT's int8 range; unknown
+   * cells are 0.5. Its probabilities are those of *free* space, as in MRPT. */
+  mrpt::maps::COccupancyGridMap2D toOccupancyGrid() const;
+
+  /** Probability that the cell is occupied, in (0, 1); 0.5 if unknown. */
+  double occupancy(std::size_t cx, std::size_t cy) const;
+
+  void writeTo(mrpt::serialization::CArchive& out) const;
+
+  /** Throws std::runtime_error if sizes are implausible or do not match. */
+  static EvidenceGrid readFrom(mrpt::serialization::CArchive& in);
+};
+
+}  // namespace submap_slam

@@ -1,0 +1,12 @@
+#pragma once
+
+namespace submap_slam {
+
+/** Version of the library, "major.minor.patch". */
+const char* version();
+
+/** Interface that joiner plugins are built against; a plugin with another number is refused when it is
+ * loaded. */
+constexpr int kPluginInterfaceVersion = 1;
+
+}  // namespace submap_slam

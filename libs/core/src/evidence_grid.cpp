@@ -1,0 +1,118 @@
+#include <submap_slam/core/evidence_grid.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+namespace submap_slam {
+namespace {
+
+using Grid = mrpt::containers::CDynamicGrid<float>;
+
+/** Grids beyond this are taken for a damaged file. */
+constexpr uint32_t kMaxSide = 1u << 16;
+
+struct CellBox {
+  std::size_t x0, x1, y0, y1;  // inclusive
+};
+
+/** Bounds of the observed cells; false if there are none. */
+bool observedBox(const Grid& hits, CellBox& box) {
+  box = {hits.getSizeX(), 0, hits.getSizeY(), 0};
+  bool any = false;
+  const float* cell = hits.data().data();
+  for (std::size_t cy = 0; cy < hits.getSizeY(); ++cy)
+    for (std::size_t cx = 0; cx < hits.getSizeX(); ++cx, ++cell)
+      if (*cell > 0) {
+        box = {std::min(box.x0, cx), std::max(box.x1, cx), std::min(box.y0, cy), std::max(box.y1, cy)};
+        any = true;
+      }
+  return any;
+}
+
+void copyBox(const Grid& from, const CellBox& box, Grid& to) {
+  for (std::size_t cy = box.y0; cy <= box.y1; ++cy) {
+    const float* row = from.data().data() + cy * from.getSizeX();
+    std::copy(row + box.x0, row + box.x1 + 1,
+              to.begin() + static_cast<std::ptrdiff_t>((cy - box.y0) * to.getSizeX()));
+  }
+}
+
+void writeCells(mrpt::serialization::CArchive& out, const Grid& grid) {
+  out.WriteBufferFixEndianness(grid.data().data(), grid.data().size());
+}
+
+void readCells(mrpt::serialization::CArchive& in, Grid& grid) {
+  std::vector<float> cells(grid.data().size());
+  in.ReadBufferFixEndianness(cells.data(), cells.size());
+  std::copy(cells.begin(), cells.end(), grid.begin());
+}
+
+}  // namespace
+
+EvidenceGrid::EvidenceGrid() : EvidenceGrid(0, 1, 0, 1, 1) {}
+
+EvidenceGrid::EvidenceGrid(double x_min, double x_max, double y_min, double y_max, double resolution)
+    : log_odds(x_min, x_max, y_min, y_max, resolution), hits(x_min, x_max, y_min, y_max, resolution) {
+  log_odds.fill(0.0f);
+  hits.fill(0.0f);
+}
+
+std::size_t EvidenceGrid::observedCells() const {
+  return static_cast<std::size_t>(std::count_if(hits.begin(), hits.end(), [](float n) { return n > 0; }));
+}
+
+EvidenceGrid EvidenceGrid::cropped() const {
+  CellBox box{};
+  if (!observedBox(hits, box)) return {};
+  const double r = resolution();
+  const auto at = [r](double min, std::size_t cells) { return min + r * static_cast<double>(cells); };
+  EvidenceGrid out(at(hits.getXMin(), box.x0), at(hits.getXMin(), box.x1 + 1), at(hits.getYMin(), box.y0),
+                   at(hits.getYMin(), box.y1 + 1), r);
+  copyBox(log_odds, box, out.log_odds);
+  copyBox(hits, box, out.hits);
+  return out;
+}
+
+double EvidenceGrid::occupancy(std::size_t cx, std::size_t cy) const {
+  const float l = *log_odds.cellByIndex(static_cast<unsigned>(cx), static_cast<unsigned>(cy));
+  return 1.0 / (1.0 + std::exp(-static_cast<double>(l)));
+}
+
+mrpt::maps::COccupancyGridMap2D EvidenceGrid::toOccupancyGrid() const {
+  using Map = mrpt::maps::COccupancyGridMap2D;
+  Map map(static_cast<float>(log_odds.getXMin()), static_cast<float>(log_odds.getXMax()),
+          static_cast<float>(log_odds.getYMin()), static_cast<float>(log_odds.getYMax()),
+          static_cast<float>(resolution()));
+  for (std::size_t cy = 0; cy < sizeY(); ++cy)
+    for (std::size_t cx = 0; cx < sizeX(); ++cx) {
+      const auto free = static_cast<float>(1.0 - occupancy(cx, cy));
+      map.setCell(static_cast<int>(cx), static_cast<int>(cy), free);
+    }
+  return map;
+}
+
+void EvidenceGrid::writeTo(mrpt::serialization::CArchive& out) const {
+  out << log_odds.getXMin() << log_odds.getYMin() << resolution() << static_cast<uint32_t>(sizeX())
+      << static_cast<uint32_t>(sizeY());
+  writeCells(out, log_odds);
+  writeCells(out, hits);
+}
+
+EvidenceGrid EvidenceGrid::readFrom(mrpt::serialization::CArchive& in) {
+  double x_min = 0, y_min = 0, r = 0;
+  uint32_t nx = 0, ny = 0;
+  in >> x_min >> y_min >> r >> nx >> ny;
+  if (!(r > 0) || !std::isfinite(x_min) || !std::isfinite(y_min) || nx == 0 || ny == 0 || nx > kMaxSide ||
+      ny > kMaxSide)
+    throw std::runtime_error("evidence grid with an implausible size");
+  EvidenceGrid grid(x_min, x_min + nx * r, y_min, y_min + ny * r, r);
+  if (grid.sizeX() != nx || grid.sizeY() != ny)
+    throw std::runtime_error("evidence grid limits do not match its size");
+  readCells(in, grid.log_odds);
+  readCells(in, grid.hits);
+  return grid;
+}
+
+}  // namespace submap_slam

@@ -1,0 +1,173 @@
+#include <submap_slam/core/grid_submap.h>
+
+#include <fmt/format.h>
+#include <mrpt/core/Clock.h>
+#include <mrpt/opengl/CSetOfLines.h>
+#include <mrpt/opengl/CSetOfObjects.h>
+#include <mrpt/opengl/stock_objects.h>
+#include <mrpt/poses/CPose3D.h>
+#include <mrpt/serialization/CArchive.h>
+#include <mrpt/serialization/stl_serialization.h>
+#include <submap_slam/core/errors.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+
+IMPLEMENTS_SERIALIZABLE(GridSubmap, mrpt::obs::CObservation, submap_slam)
+
+namespace submap_slam {
+namespace {
+
+using mrpt::math::TPose2D;
+using mrpt::serialization::CArchive;
+
+/** More than this in a count field is taken for a damaged file. */
+constexpr uint32_t kMaxNodes = 10'000'000;
+
+void writePose(CArchive& out, const TPose2D& p) { out << p.x << p.y << p.phi; }
+
+TPose2D readPose(CArchive& in) {
+  TPose2D p;
+  in >> p.x >> p.y >> p.phi;
+  return p;
+}
+
+void writeNode(CArchive& out, const SubmapNode& node) {
+  out << node.stamp;
+  writePose(out, node.pose);
+  out << static_cast<uint8_t>(node.odometry.has_value());
+  if (node.odometry) writePose(out, *node.odometry);
+  out << static_cast<uint32_t>(node.scans.size());
+  for (const auto& scan : node.scans) out << *scan;
+}
+
+uint32_t readCount(CArchive& in) {
+  const auto n = in.ReadAs<uint32_t>();
+  if (n > kMaxNodes) throw std::runtime_error("implausible count in a submap");
+  return n;
+}
+
+SubmapNode readNode(CArchive& in) {
+  SubmapNode node;
+  in >> node.stamp;
+  node.pose = readPose(in);
+  if (in.ReadAs<uint8_t>() != 0) node.odometry = readPose(in);
+  for (uint32_t n = readCount(in); n > 0; --n)
+    node.scans.push_back(in.ReadObject<mrpt::obs::CObservation2DRangeScan>());
+  return node;
+}
+
+void writeStatistics(CArchive& out, const SubmapStatistics& s) {
+  out << s.match_score_mean << s.match_score_min << s.match_score_max << s.rescues << s.max_particles
+      << s.resamplings << s.ambiguous_scans << s.closed_because;
+}
+
+SubmapStatistics readStatistics(CArchive& in) {
+  SubmapStatistics s;
+  in >> s.match_score_mean >> s.match_score_min >> s.match_score_max >> s.rescues >> s.max_particles >>
+      s.resamplings >> s.ambiguous_scans >> s.closed_because;
+  return s;
+}
+
+}  // namespace
+
+uint8_t GridSubmap::serializeGetVersion() const { return 0; }
+
+void GridSubmap::serializeTo(CArchive& out) const {
+  out << sensorLabel << timestamp << id << first_frame << end_frame;
+  evidence.writeTo(out);
+  out << static_cast<uint32_t>(nodes.size());
+  for (const auto& node : nodes) writeNode(out, node);
+  out << end_pose << static_cast<uint8_t>(has_successor);
+  writeStatistics(out, statistics);
+}
+
+void GridSubmap::serializeFrom(CArchive& in, uint8_t version) {
+  if (version != 0) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+  in >> sensorLabel >> timestamp >> id >> first_frame >> end_frame;
+  evidence = EvidenceGrid::readFrom(in);
+  nodes.clear();
+  for (uint32_t n = readCount(in); n > 0; --n) nodes.push_back(readNode(in));
+  in >> end_pose;
+  has_successor = in.ReadAs<uint8_t>() != 0;
+  statistics = readStatistics(in);
+}
+
+double GridSubmap::radius() const {
+  const auto& g = evidence.hits;
+  double r2 = 0;
+  for (std::size_t cy = 0; cy < g.getSizeY(); ++cy)
+    for (std::size_t cx = 0; cx < g.getSizeX(); ++cx)
+      if (*g.cellByIndex(static_cast<unsigned>(cx), static_cast<unsigned>(cy)) > 0) {
+        const double x = g.idx2x(static_cast<int>(cx)), y = g.idx2y(static_cast<int>(cy));
+        r2 = std::max(r2, x * x + y * y);
+      }
+  return std::sqrt(r2);
+}
+
+double GridSubmap::pathLength() const {
+  double length = 0;
+  for (std::size_t i = 1; i < nodes.size(); ++i)
+    length += std::hypot(nodes[i].pose.x - nodes[i - 1].pose.x, nodes[i].pose.y - nodes[i - 1].pose.y);
+  return length;
+}
+
+std::size_t GridSubmap::keyNodes() const {
+  return static_cast<std::size_t>(
+      std::count_if(nodes.begin(), nodes.end(), [](const SubmapNode& n) { return n.isKey(); }));
+}
+
+void GridSubmap::getSensorPose(mrpt::poses::CPose3D& pose) const { pose = mrpt::poses::CPose3D(); }
+
+void GridSubmap::setSensorPose(const mrpt::poses::CPose3D&) {
+  throw std::logic_error("a GridSubmap has no sensor pose; its frame is the robot pose at its first node");
+}
+
+void GridSubmap::getDescriptionAsText(std::ostream& out) const {
+  CObservation::getDescriptionAsText(out);
+  const auto end = end_pose.mean;
+  out << fmt::format(
+      "\nGrid submap {}\n"
+      "  frames of the log : {} to {}\n"
+      "  nodes             : {} ({} with scans), path {:.2f} m\n"
+      "  grid              : {} x {} cells of {:.3f} m, {} observed\n"
+      "  end pose          : x {:.3f} m, y {:.3f} m, heading {:.2f} deg\n"
+      "  its 1-sigma       : x {:.4f} m, y {:.4f} m, heading {:.3f} deg\n"
+      "  match score       : mean {:.3f}, min {:.3f}, max {:.3f}\n"
+      "  filter            : {} rescues, {} ambiguous scans, at most {} particles, {} resamplings\n"
+      "  closed because    : {}\n",
+      id, first_frame, end_frame, nodes.size(), keyNodes(), pathLength(), evidence.sizeX(), evidence.sizeY(),
+      evidence.resolution(), evidence.observedCells(), end.x(), end.y(), mrpt::RAD2DEG(end.phi()),
+      std::sqrt(end_pose.cov(0, 0)), std::sqrt(end_pose.cov(1, 1)),
+      mrpt::RAD2DEG(std::sqrt(end_pose.cov(2, 2))), statistics.match_score_mean, statistics.match_score_min,
+      statistics.match_score_max, statistics.rescues, statistics.ambiguous_scans, statistics.max_particles,
+      statistics.resamplings, statistics.closed_because);
+}
+
+std::string GridSubmap::exportTxtHeader() const {
+  return "id first_frame end_frame nodes key_nodes path_m cells end_x_m end_y_m end_phi_rad";
+}
+
+std::string GridSubmap::exportTxtDataRow() const {
+  return fmt::format("{} {} {} {} {} {:.4f} {} {:.9g} {:.9g} {:.9g}", id, first_frame, end_frame,
+                     nodes.size(), keyNodes(), pathLength(), evidence.observedCells(), end_pose.mean.x(),
+                     end_pose.mean.y(), end_pose.mean.phi());
+}
+
+void GridSubmap::getVisualizationInto(mrpt::opengl::CSetOfObjects& out) const {
+  out.clear();
+  evidence.toOccupancyGrid().getVisualizationInto(out);
+  auto path = mrpt::opengl::CSetOfLines::Create();
+  path->setColor_u8(0x20, 0x60, 0xd0);
+  path->setLineWidth(2);
+  constexpr double kAboveGrid = 0.02;
+  for (std::size_t i = 1; i < nodes.size(); ++i) {
+    const auto &a = nodes[i - 1].pose, &b = nodes[i].pose;
+    path->appendLine(a.x, a.y, kAboveGrid, b.x, b.y, kAboveGrid);
+  }
+  out.insert(path);
+  out.insert(mrpt::opengl::stock_objects::CornerXYZSimple(1.0f));
+}
+
+}  // namespace submap_slam

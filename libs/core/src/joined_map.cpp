@@ -1,0 +1,211 @@
+#include <submap_slam/core/joined_map.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace submap_slam {
+namespace {
+
+using mrpt::math::TPose2D;
+using mrpt::poses::CPosePDFGaussian;
+
+void requireOneFrameEach(const GridSubmaps& submaps, const std::vector<CPosePDFGaussian>& frames) {
+  if (submaps.size() != frames.size()) throw std::invalid_argument("one frame is needed for each submap");
+}
+
+/** Half-open rectangle of cell indices. */
+struct CellBox {
+  int x0 = 0, x1 = 0, y0 = 0, y1 = 0;
+  bool empty() const { return x0 >= x1; }
+};
+
+CellBox observedBox(const EvidenceGrid& grid) {
+  const int nx = static_cast<int>(grid.sizeX()), ny = static_cast<int>(grid.sizeY());
+  CellBox box{nx, 0, ny, 0};
+  auto cell = grid.hits.begin();
+  for (int y = 0; y < ny; ++y)
+    for (int x = 0; x < nx; ++x, ++cell) {
+      if (*cell <= 0) continue;
+      box = {std::min(box.x0, x), std::max(box.x1, x + 1), std::min(box.y0, y), std::max(box.y1, y + 1)};
+    }
+  return box;
+}
+
+/** A submap in the global map frame, ready for bilinear look-ups. */
+class PlacedEvidence {
+ public:
+  PlacedEvidence(const EvidenceGrid& grid, const TPose2D& T_w_s)
+      : grid_(grid),
+        T_w_s_(T_w_s),
+        cos_(std::cos(T_w_s.phi)),
+        sin_(std::sin(T_w_s.phi)),
+        box_(observedBox(grid)) {}
+
+  bool empty() const { return box_.empty(); }
+
+  /** Grows [x_min, x_max] × [y_min, y_max] (m, global map frame) by everything that interpolation reaches. */
+  void extend(double& x_min, double& x_max, double& y_min, double& y_max) const {
+    for (const double u : {box_.x0 - 1.0, box_.x1 * 1.0})
+      for (const double v : {box_.y0 - 1.0, box_.y1 * 1.0}) {
+        const double r = grid_.resolution();
+        const mrpt::math::TPoint2D corner = T_w_s_.composePoint(
+            {grid_.log_odds.getXMin() + (u + 0.5) * r, grid_.log_odds.getYMin() + (v + 0.5) * r});
+        x_min = std::min(x_min, corner.x), x_max = std::max(x_max, corner.x);
+        y_min = std::min(y_min, corner.y), y_max = std::max(y_max, corner.y);
+      }
+  }
+
+  /** Index coordinates (cell centres are integers) of a global point (m). */
+  mrpt::math::TPoint2D toIndex(double x, double y) const {
+    const double dx = x - T_w_s_.x, dy = y - T_w_s_.y, r = grid_.resolution();
+    return {(cos_ * dx + sin_ * dy - grid_.log_odds.getXMin()) / r - 0.5,
+            (-sin_ * dx + cos_ * dy - grid_.log_odds.getYMin()) / r - 0.5};
+  }
+
+  /** Those k in [0, count) for which start + k·step can reach an observed cell, as a half-open interval. */
+  std::pair<int, int> reach(const mrpt::math::TPoint2D& start, const mrpt::math::TPoint2D& step,
+                            int count) const {
+    double from = 0, to = count - 1;
+    clip(start.x, step.x, box_.x0 - 1, box_.x1, from, to);
+    clip(start.y, step.y, box_.y0 - 1, box_.y1, from, to);
+    return {static_cast<int>(std::ceil(from)), static_cast<int>(std::floor(to)) + 1};
+  }
+
+  /** Bilinear log-odds sum and hit count; cells outside the grid count as unknown. */
+  std::pair<double, double> at(const mrpt::math::TPoint2D& index) const {
+    const double fx = std::floor(index.x), fy = std::floor(index.y);
+    const int cx = static_cast<int>(fx), cy = static_cast<int>(fy);
+    const double a = index.x - fx, b = index.y - fy;
+    double log_odds = 0, hits = 0;
+    const auto add = [&](int x, int y, double weight) {
+      if (x < box_.x0 || x >= box_.x1 || y < box_.y0 || y >= box_.y1) return;
+      const std::size_t cell = static_cast<std::size_t>(y) * grid_.sizeX() + static_cast<std::size_t>(x);
+      log_odds += weight * static_cast<double>(grid_.log_odds.data()[cell]);
+      hits += weight * static_cast<double>(grid_.hits.data()[cell]);
+    };
+    add(cx, cy, (1 - a) * (1 - b));
+    add(cx + 1, cy, a * (1 - b));
+    add(cx, cy + 1, (1 - a) * b);
+    add(cx + 1, cy + 1, a * b);
+    return {log_odds, hits};
+  }
+
+ private:
+  static void clip(double start, double step, double low, double high, double& from, double& to) {
+    if (std::abs(step) < 1e-12) {
+      if (start <= low || start >= high) to = from - 1;
+      return;
+    }
+    const double a = (low - start) / step, b = (high - start) / step;
+    from = std::max(from, std::min(a, b));
+    to = std::min(to, std::max(a, b));
+  }
+
+  const EvidenceGrid& grid_;
+  TPose2D T_w_s_;
+  double cos_, sin_;
+  CellBox box_;
+};
+
+/** Fewer hits than this come from rounding where a look-up falls on the centre of a neighbouring cell. */
+constexpr double kLeastHits = 1e-6;
+
+/** Σ N_i L_i, Σ N_i², Σ N_i of one cell. */
+struct FusionSums {
+  double nl = 0, nn = 0, n = 0;
+};
+
+void fuseRow(const std::vector<PlacedEvidence>& submaps, int row, EvidenceGrid& map) {
+  const int columns = static_cast<int>(map.sizeX());
+  const double x0 = map.log_odds.idx2x(0), y0 = map.log_odds.idx2y(row), r = map.resolution();
+  std::vector<FusionSums> sums(map.sizeX());
+  for (const PlacedEvidence& submap : submaps) {
+    const auto start = submap.toIndex(x0, y0), step = submap.toIndex(x0 + r, y0) - start;
+    const auto [from, to] = submap.reach(start, step, columns);
+    for (int k = from; k < to; ++k) {
+      const auto [log_odds, hits] = submap.at(start + step * k);
+      FusionSums& s = sums[static_cast<std::size_t>(k)];
+      s.nl += hits * log_odds, s.nn += hits * hits, s.n += hits;
+    }
+  }
+  const auto offset = static_cast<std::ptrdiff_t>(row) * columns;
+  for (int k = 0; k < columns; ++k) {
+    const FusionSums& s = sums[static_cast<std::size_t>(k)];
+    if (s.n < kLeastHits) continue;
+    map.log_odds.begin()[offset + k] = static_cast<float>(s.n * s.nl / s.nn);
+    map.hits.begin()[offset + k] = static_cast<float>(s.n);
+  }
+}
+
+}  // namespace
+
+const char* toString(JoinStatus status) {
+  switch (status) {
+    case JoinStatus::kChained:
+      return "chained";
+    case JoinStatus::kConverged:
+      return "converged";
+    case JoinStatus::kIterationLimit:
+      return "iteration limit";
+    case JoinStatus::kNothingToJoin:
+      return "nothing to join";
+    case JoinStatus::kFailed:
+      return "failed";
+  }
+  return "unknown";
+}
+
+JoinedMap chainSubmaps(const GridSubmaps& submaps) {
+  JoinedMap chain;
+  CPosePDFGaussian frame;  // identity, no uncertainty
+  frame.cov.setZero();
+  for (std::size_t k = 0; k < submaps.size(); ++k) {
+    chain.frames.push_back(frame);
+    const GridSubmap& submap = *submaps[k];
+    if (submap.has_successor && k + 1 < submaps.size()) {
+      Constraint link;
+      link.from = submap.id;
+      link.to = submaps[k + 1]->id;
+      link.T_a_b = submap.end_pose;
+      link.reason = "end pose of the submap";
+      chain.constraints.push_back(link);
+    }
+    frame += submap.end_pose;
+  }
+  return chain;
+}
+
+Trajectory trajectoryOf(const GridSubmaps& submaps, const std::vector<CPosePDFGaussian>& frames) {
+  requireOneFrameEach(submaps, frames);
+  Trajectory trajectory;
+  for (std::size_t k = 0; k < submaps.size(); ++k) {
+    const TPose2D T_w_s = frames[k].mean.asTPose();
+    for (const SubmapNode& node : submaps[k]->nodes) trajectory.push_back({node.stamp, T_w_s + node.pose});
+  }
+  return trajectory;
+}
+
+EvidenceGrid fuseEvidence(const GridSubmaps& submaps, const std::vector<CPosePDFGaussian>& frames,
+                          double resolution) {
+  requireOneFrameEach(submaps, frames);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  double x_min = kInfinity, x_max = -kInfinity, y_min = kInfinity, y_max = -kInfinity, finest = kInfinity;
+  std::vector<PlacedEvidence> placed;
+  for (std::size_t k = 0; k < submaps.size(); ++k) {
+    const PlacedEvidence submap(submaps[k]->evidence, frames[k].mean.asTPose());
+    if (submap.empty()) continue;
+    submap.extend(x_min, x_max, y_min, y_max);
+    finest = std::min(finest, submaps[k]->evidence.resolution());
+    placed.push_back(submap);
+  }
+  if (placed.empty()) return {};
+
+  EvidenceGrid map(x_min, x_max, y_min, y_max, resolution > 0 ? resolution : finest);
+  tbb::parallel_for(0, static_cast<int>(map.sizeY()), [&](int row) { fuseRow(placed, row, map); });
+  return map.cropped();
+}
+
+}  // namespace submap_slam

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <mrpt/math/TPose2D.h>
+#include <submap_slam/mapping/correlative_search.h>
+#include <submap_slam/mapping/laser_points.h>
+#include <submap_slam/mapping/scan_matcher.h>
+#include <submap_slam/mapping/surfel_map.h>
+
+#include <cstdint>
+#include <optional>
+#include <random>
+#include <vector>
+
+namespace submap_slam {
+
+/** Standard deviations of odometry over one step; wide on purpose: the matcher decides. */
+struct MotionParams {
+  double sigma_xy = 0.01;           ///< m
+  double sigma_xy_per_m = 0.10;     ///< m per m
+  double sigma_phi = 0.02;          ///< rad
+  double sigma_phi_per_rad = 0.10;  ///< rad per rad
+  double sigma_phi_per_m = 0.05;    ///< rad per m
+};
+
+struct FilterParams {
+  SurfelMapParams map;
+  MatcherParams matcher;
+  CorrelativeSearchParams search;
+  MotionParams motion;
+  double rescue_below = 0.85;       ///< share of inlier beams
+  double slip_beyond = 5.0;        ///< sigmas
+  double slip_cost = 20.0;         ///< negative log probability
+  double slip_information = 0.02;  ///< share of the odometry's information that is left in a rescue
+  double key_distance = 0.15;      ///< m
+  double key_angle = 0.1;          ///< rad
+  int fixed_particles = 0;         ///< 0: adaptive
+  int max_particles = 12;
+  double resample_below = 0.5;    ///< share of N_eff
+  double likelihood_power = 0.1;  ///< tempering
+  double min_weight = 1e-3;
+  double decided_weight = 0.98;
+};
+
+/** What a hypothesis says of one frame. */
+struct PathNode {
+  mrpt::math::TPose2D pose;  ///< T_s_robot
+  float inlier_share = 1;
+  bool key = false;         ///< inserted into the map
+  bool by_odometry = true;  ///< agrees with odometry since the last such node
+};
+
+/** One hypothesis: a path and the map that follows from it. */
+struct Particle {
+  SurfelMap map;
+  std::vector<PathNode> path;  ///< one node for each frame so far
+  double log_weight = 0;
+};
+
+/** Rao-Blackwellized particle filter over the path of the robot, with one matching map per particle.
+ *
+ * The proposal is the scan matcher's posterior (Grisetti, Stachniss, Burgard, T-RO 2007). With
+ * `fixed_particles` > 0 it is the classical filter: sampling around the match, resampling when N_eff falls
+ * below a threshold. Otherwise the number of particles adapts: one while the posterior has one mode, one for
+ * each mode while it has several, one again when the weights have decided.
+ */
+class ParticleFilter {
+ public:
+  ParticleFilter(const FilterParams& params, uint64_t seed);
+
+  /** Takes the next frame. @param increment T_previous_now by odometry; empty: constant velocity is assumed
+   */
+  void step(const LaserPoints& scan, const std::optional<mrpt::math::TPose2D>& increment);
+
+  const Particle& best() const;
+  std::size_t size() const { return particles_.size(); }
+
+  /** 1 / Σ w², w the normalised weights. */
+  double effectiveParticles() const;
+
+  uint32_t rescues() const { return rescues_; }
+  uint32_t resamplings() const { return resamplings_; }
+
+  /** Information of the odometry prior over one step. */
+  static Eigen::Matrix3d motionInformation(const MotionParams& params, const mrpt::math::TPose2D& increment);
+
+ private:
+  struct Proposal {
+    MatchResult match;
+    double log_weight = 0;    ///< to be added to the particle's
+    bool by_odometry = true;  ///< see PathNode
+  };
+  std::vector<Proposal> propose(const Particle& particle, const LaserPoints& scan, const PosePrior& prior);
+  std::vector<Proposal> rescue(const Particle& particle, const LaserPoints& scan, const PosePrior& prior,
+                               const MatchResult& failed);
+  /** Odometry's prediction from the last node that agreed with it; empty if that was the last node. */
+  std::optional<PosePrior> priorSinceAgreement(const Particle& particle) const;
+  Proposal sampled(const Proposal& around, const PosePrior& prior);
+  void extend(Particle& particle, const LaserPoints& scan, const Proposal& proposal);
+  void normalise();
+  void prune();
+  void resample();
+  double normal();
+
+  FilterParams params_;
+  ScanMatcher matcher_;
+  std::mt19937_64 random_;
+  std::vector<Particle> particles_;
+  std::vector<mrpt::math::TPose2D> odometry_;  ///< T_start_frame by odometry alone, one for each frame so far
+  uint32_t rescues_ = 0, resamplings_ = 0;
+};
+
+}  // namespace submap_slam

@@ -1,0 +1,123 @@
+#include <submap_slam/mapping/grid_mapper.h>
+
+namespace submap_slam {
+namespace {
+
+constexpr Range kPositive{1e-9, 1e9};
+constexpr Range kNonNegative{0, 1e9};
+constexpr Range kShare{0, 1};
+
+void describe(ParameterTable& table, SurfelMapParams& p) {
+  table.add("surfel_resolution", p.resolution, "m", {0.005, 1}, "Cell size of the matching map");
+  table.add("search_radius", p.search_radius, "m", kPositive,
+            "A beam is matched to the nearest surfel within this");
+  table.add("fit_radius", p.fit_radius, "m", kPositive,
+            "A surfel's line is fitted to the surfels within this");
+}
+
+void describe(ParameterTable& table, MatcherParams& p) {
+  table.add("line_sigma", p.line_sigma, "m", kPositive,
+            "Standard deviation of a beam's distance from its line");
+  table.add("cauchy_scale", p.cauchy_scale, "", kPositive, "Scale of the Cauchy loss in units of line_sigma");
+  table.add("max_iterations", p.max_iterations, "", {1, 1000},
+            "Most Levenberg-Marquardt iterations per scan");
+}
+
+void describe(ParameterTable& table, CorrelativeSearchParams& p) {
+  table.add("window_xy", p.window_xy, "m", kPositive, "Half width of the search window");
+  table.add("window_phi", p.window_phi, "rad", kPositive, "Half width of the search window in heading");
+  table.add("step_xy", p.step_xy, "m", kPositive, "Step of the search");
+  table.add("step_phi", p.step_phi, "rad", kPositive, "Step of the search in heading");
+  table.add("max_beams", p.max_beams, "", {1, 1e6},
+            "Most beams that are scored, evenly spread over the scan");
+  table.add("sigma", p.sigma, "m", kPositive,
+            "Softness of the score: standard deviation of a beam's distance");
+  table.add("peak_ratio", p.peak_ratio, "", kShare, "Peaks below this share of the best score are dropped");
+  table.add("max_peaks", p.max_peaks, "", {1, 1000}, "Most peaks that are followed up");
+}
+
+void describe(ParameterTable& table, MotionParams& p) {
+  table.add("sigma_xy", p.sigma_xy, "m", kPositive, "Standard deviation of a step's translation");
+  table.add("sigma_xy_per_m", p.sigma_xy_per_m, "m/m", kNonNegative, "… for each metre moved");
+  table.add("sigma_phi", p.sigma_phi, "rad", kPositive, "Standard deviation of a step's turn");
+  table.add("sigma_phi_per_rad", p.sigma_phi_per_rad, "rad/rad", kNonNegative, "… for each radian turned");
+  table.add("sigma_phi_per_m", p.sigma_phi_per_m, "rad/m", kNonNegative, "… for each metre moved");
+}
+
+void describeParticles(ParameterTable& table, FilterParams& p) {
+  table.add("fixed", p.fixed_particles, "", {0, 10000},
+            "Number of particles of the classical filter; 0: as many as the posterior has modes");
+  table.add("max", p.max_particles, "", {1, 10000}, "Most particles of the adaptive filter");
+  table.add("resample_below", p.resample_below, "", kShare,
+            "The classical filter resamples when N_eff falls below this share");
+  table.add("likelihood_power", p.likelihood_power, "", {1e-6, 1},
+            "Exponent of a scan's likelihood in the weights: neighbouring beams are not independent");
+  table.add("min_weight", p.min_weight, "", kShare,
+            "Hypotheses of the adaptive filter below this weight are dropped");
+  table.add("decided_weight", p.decided_weight, "", kShare, "A hypothesis above this weight has won");
+}
+
+void describe(ParameterTable& table, ClosingParams& p) {
+  table.add("lost_below", p.lost_below, "", kShare, "A scan with fewer inlier beams than this share is lost");
+  table.add("lost_scans", p.lost_scans, "", {1, 1e6}, "This many lost scans in a row close the submap");
+  table.add("undecided_scans", p.undecided_scans, "", {1, 1e6},
+            "This many scans with several hypotheses close the submap");
+  table.add("max_sigma_xy", p.max_sigma_xy, "m", kPositive,
+            "A pose less certain than this closes the submap");
+  table.add("max_sigma_phi", p.max_sigma_phi, "rad", kPositive,
+            "A heading less certain than this closes the submap");
+}
+
+void describe(ParameterTable& table, DriftParams& p) {
+  table.add("inflation", p.inflation, "", kPositive,
+            "Factor on the standard deviations that the matches' information gives");
+  table.add("sigma_xy_per_m", p.sigma_xy_per_m, "m/√m", kNonNegative,
+            "Least standard deviation of the end position");
+  table.add("sigma_phi_per_m", p.sigma_phi_per_m, "rad/√m", kNonNegative,
+            "Least standard deviation of the end heading");
+}
+
+void describe(ParameterTable& table, EvidenceParams& p) {
+  table.add("resolution", p.resolution, "m", {0.005, 10}, "Cell size of submaps and map");
+  table.add("max_range", p.max_range, "m", kPositive, "Beams are drawn up to this range");
+  table.add("occupied_log_odds", p.occupied_log_odds, "", kPositive, "Evidence of a beam's end");
+  table.add("free_log_odds", p.free_log_odds, "", {-1e9, 0}, "Evidence of a beam's passing");
+}
+
+}  // namespace
+
+void describe(ParameterTable& table, GridMapperParams& p) {
+  table.section("mapper", "Local mapper: from frames to grid submaps");
+  table.add("max_range", p.max_range, "m", kNonNegative,
+            "Beams beyond this are not used; 0: all that the scanner gives");
+  table.add("key_distance", p.filter.key_distance, "m", kPositive,
+            "A scan is inserted into the map after this distance");
+  table.add("key_angle", p.filter.key_angle, "rad", kPositive, "… or after this turn");
+  table.add("refine", p.refine, "Match every scan once more to the finished submap");
+  table.add("refine_sigma_xy", p.refine_sigma_xy, "m", kPositive, "How far refinement may move a pose");
+  table.add("refine_sigma_phi", p.refine_sigma_phi, "rad", kPositive, "How far refinement may turn a pose");
+  table.section("matcher", "Scan matcher: robust point-to-line distances to surfels");
+  describe(table, p.filter.map);
+  describe(table, p.filter.matcher);
+  table.section("rescue", "Correlative search for scans that the matcher cannot explain");
+  table.add("below", p.filter.rescue_below, "", kShare, "Search if fewer beams than this share are inliers");
+  table.add("slip_beyond", p.filter.slip_beyond, "", kPositive,
+            "A match this many sigmas from odometry's prediction makes odometry doubtful");
+  table.add("slip_cost", p.filter.slip_cost, "", kNonNegative,
+            "Negative log probability that odometry is wrong at a doubtful scan");
+  table.add("slip_information", p.filter.slip_information, "", kShare,
+            "Share of the odometry prior's information that is believed during a rescue");
+  describe(table, p.filter.search);
+  table.section("motion", "Odometry prior of one step");
+  describe(table, p.filter.motion);
+  table.section("particles", "Particle filter");
+  describeParticles(table, p.filter);
+  table.section("closing", "Decision rules of the filter that close a submap before its stretch ends");
+  describe(table, p.closing);
+  table.section("drift", "Covariance of a submap's end pose");
+  describe(table, p.drift);
+  table.section("evidence", "Evidence grids of submaps and map");
+  describe(table, p.evidence);
+}
+
+}  // namespace submap_slam

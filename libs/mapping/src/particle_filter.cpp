@@ -1,0 +1,245 @@
+#include <submap_slam/mapping/particle_filter.h>
+
+#include <mrpt/math/wrap2pi.h>
+#include <mrpt/poses/CPose2D.h>
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+
+namespace submap_slam {
+namespace {
+
+using mrpt::math::TPose2D;
+
+/** Two matches closer than this are the same mode. */
+constexpr double kSameModeM = 0.1, kSameModeRad = 0.05;
+
+TPose2D compose(const TPose2D& T_a_b, const TPose2D& T_b_c) { return T_a_b + T_b_c; }
+
+bool sameMode(const TPose2D& a, const TPose2D& b) {
+  return std::hypot(a.x - b.x, a.y - b.y) < kSameModeM &&
+         std::abs(mrpt::math::wrapToPi(a.phi - b.phi)) < kSameModeRad;
+}
+
+/** Distance of a pose from the prior's mean, in sigmas. */
+double mahalanobis(const TPose2D& pose, const PosePrior& prior) {
+  const Eigen::Vector3d d(pose.x - prior.mean.x, pose.y - prior.mean.y,
+                          mrpt::math::wrapToPi(pose.phi - prior.mean.phi));
+  return std::sqrt(d.dot(prior.information * d));
+}
+
+/** True if a search around `a` has looked at `b` with room to spare. */
+bool covers(const CorrelativeSearchParams& search, const TPose2D& a, const TPose2D& b) {
+  return std::hypot(a.x - b.x, a.y - b.y) < 0.5 * search.window_xy &&
+         std::abs(mrpt::math::wrapToPi(a.phi - b.phi)) < 0.5 * search.window_phi;
+}
+
+/** The last motion again; nothing if there is none yet. */
+TPose2D lastIncrement(const Particle& particle) {
+  const auto n = particle.path.size();
+  if (n < 2) return {};
+  return particle.path[n - 1].pose - particle.path[n - 2].pose;
+}
+
+}  // namespace
+
+ParticleFilter::ParticleFilter(const FilterParams& params, uint64_t seed)
+    : params_(params), matcher_(params.matcher, params.map.search_radius), random_(seed) {
+  particles_.push_back({SurfelMap(params_.map), {}, 0.0});
+}
+
+Eigen::Matrix3d ParticleFilter::motionInformation(const MotionParams& p, const TPose2D& increment) {
+  const double distance = std::hypot(increment.x, increment.y),
+               turn = std::abs(mrpt::math::wrapToPi(increment.phi));
+  const double sigma_xy = p.sigma_xy + p.sigma_xy_per_m * distance;
+  const double sigma_phi = p.sigma_phi + p.sigma_phi_per_rad * turn + p.sigma_phi_per_m * distance;
+  return Eigen::Vector3d(1 / (sigma_xy * sigma_xy), 1 / (sigma_xy * sigma_xy), 1 / (sigma_phi * sigma_phi))
+      .asDiagonal();
+}
+
+void ParticleFilter::step(const LaserPoints& scan, const std::optional<TPose2D>& increment) {
+  odometry_.push_back(odometry_.empty() ? TPose2D()
+                                        : compose(odometry_.back(), increment.value_or(TPose2D())));
+  std::vector<Particle> next;
+  for (auto& particle : particles_) {
+    if (particle.path.empty()) {
+      extend(particle, scan, {});
+      next.push_back(std::move(particle));
+      continue;
+    }
+    const TPose2D motion = increment.value_or(lastIncrement(particle));
+    const PosePrior prior{compose(particle.path.back().pose, motion),
+                          motionInformation(params_.motion, motion)};
+    const auto proposals = propose(particle, scan, prior);
+    for (std::size_t k = 0; k < proposals.size(); ++k) {
+      Particle child = k + 1 < proposals.size() ? particle : std::move(particle);
+      extend(child, scan, proposals[k]);
+      next.push_back(std::move(child));
+    }
+  }
+  particles_ = std::move(next);
+  normalise();
+  if (params_.fixed_particles > 0)
+    resample();
+  else
+    prune();
+}
+
+std::vector<ParticleFilter::Proposal> ParticleFilter::propose(const Particle& particle,
+                                                              const LaserPoints& scan,
+                                                              const PosePrior& prior) {
+  if (particle.map.empty()) {
+    Proposal blind;
+    blind.match.pose = prior.mean;
+    return {blind};
+  }
+  const MatchResult match = matcher_.match(particle.map, scan, prior);
+  const bool plausible = mahalanobis(match.pose, prior) <= params_.slip_beyond;
+  std::vector<Proposal> out;
+  if (plausible && match.inlier_share >= params_.rescue_below)
+    out.push_back({match, -params_.likelihood_power * match.cost, true});
+  else
+    out = rescue(particle, scan, prior, match);
+  if (params_.fixed_particles > 0) out = {sampled(out.front(), prior)};
+  return out;
+}
+
+std::vector<ParticleFilter::Proposal> ParticleFilter::rescue(const Particle& particle,
+                                                             const LaserPoints& scan, const PosePrior& prior,
+                                                             const MatchResult& failed) {
+  const TPose2D& last = particle.path.back().pose;
+  std::vector<Proposal> modes;
+  const auto add = [&](const MatchResult& match, double extra_cost, bool by_odometry) {
+    modes.push_back({match, -params_.likelihood_power * (match.cost + extra_cost), by_odometry});
+  };
+  // Odometry is believed, over the last step or, where it stalled and caught up, since it was right last.
+  add(failed, 0, mahalanobis(failed.pose, prior) <= params_.slip_beyond);
+  if (const auto since = priorSinceAgreement(particle))
+    add(matcher_.match(particle.map, scan, *since), 0, true);
+  // Odometry is not believed: search where it says, and where the robot would be if it went on as before or
+  // stood still.
+  const PosePrior wide{prior.mean, prior.information * params_.slip_information};
+  std::vector<TPose2D> searched;
+  for (const auto& centre : {prior.mean, compose(last, lastIncrement(particle)), last}) {
+    const bool covered = std::any_of(searched.begin(), searched.end(),
+                                     [&](const auto& c) { return covers(params_.search, c, centre); });
+    if (covered) continue;
+    searched.push_back(centre);
+    for (const auto& peak : correlativeSearch(particle.map, scan, centre, params_.search))
+      add(matcher_.match(particle.map, scan, wide, peak.pose), params_.slip_cost, false);
+  }
+  std::stable_sort(modes.begin(), modes.end(),
+                   [](const auto& a, const auto& b) { return a.log_weight > b.log_weight; });
+  if (!sameMode(modes.front().match.pose, failed.pose)) ++rescues_;
+  const double least = modes.front().log_weight + std::log(params_.min_weight);
+  std::vector<Proposal> out;
+  for (const auto& mode : modes) {
+    const bool known = std::any_of(out.begin(), out.end(),
+                                   [&](const auto& p) { return sameMode(p.match.pose, mode.match.pose); });
+    if (!known && mode.log_weight >= least) out.push_back(mode);
+  }
+  return out;
+}
+
+std::optional<PosePrior> ParticleFilter::priorSinceAgreement(const Particle& particle) const {
+  std::size_t k = particle.path.size() - 1;
+  while (k > 0 && !particle.path[k].by_odometry) --k;
+  if (k + 1 == particle.path.size()) return std::nullopt;  // the last step's own prior says the same
+  const TPose2D motion = odometry_.back() - odometry_[k];
+  return PosePrior{compose(particle.path[k].pose, motion), motionInformation(params_.motion, motion)};
+}
+
+ParticleFilter::Proposal ParticleFilter::sampled(const Proposal& around, const PosePrior& prior) {
+  const Eigen::Matrix3d information = around.match.information + prior.information;
+  const Eigen::Vector3d standard(normal(), normal(), normal());
+  // Λ = L Lᵀ: x = L⁻ᵀ z has covariance Λ⁻¹.
+  const Eigen::Vector3d offset = information.llt().matrixU().solve(standard);
+  Proposal out = around;
+  out.match.pose = {around.match.pose.x + offset.x(), around.match.pose.y + offset.y(),
+                    mrpt::math::wrapToPi(around.match.pose.phi + offset.z())};
+  return out;
+}
+
+void ParticleFilter::extend(Particle& particle, const LaserPoints& scan, const Proposal& proposal) {
+  PathNode node{proposal.match.pose, static_cast<float>(proposal.match.inlier_share), false,
+                proposal.by_odometry};
+  const auto last_key =
+      std::find_if(particle.path.rbegin(), particle.path.rend(), [](const auto& n) { return n.key; });
+  if (last_key == particle.path.rend()) {
+    node.key = true;
+  } else {
+    const TPose2D moved = node.pose - last_key->pose;
+    node.key = std::hypot(moved.x, moved.y) >= params_.key_distance ||
+               std::abs(mrpt::math::wrapToPi(moved.phi)) >= params_.key_angle;
+  }
+  if (scan.points.empty()) node.key = false;
+  if (node.key) particle.map.insert(scan, node.pose);
+  particle.path.push_back(node);
+  particle.log_weight += proposal.log_weight;
+}
+
+void ParticleFilter::normalise() {
+  double most = -1e300, sum = 0;
+  for (const auto& p : particles_) most = std::max(most, p.log_weight);
+  for (const auto& p : particles_) sum += std::exp(p.log_weight - most);
+  for (auto& p : particles_) p.log_weight -= most + std::log(sum);
+}
+
+double ParticleFilter::effectiveParticles() const {
+  double sum = 0;
+  for (const auto& p : particles_) sum += std::exp(2 * p.log_weight);
+  return 1 / sum;
+}
+
+const Particle& ParticleFilter::best() const {
+  return *std::max_element(particles_.begin(), particles_.end(),
+                           [](const auto& a, const auto& b) { return a.log_weight < b.log_weight; });
+}
+
+void ParticleFilter::prune() {
+  std::stable_sort(particles_.begin(), particles_.end(),
+                   [](const auto& a, const auto& b) { return a.log_weight > b.log_weight; });
+  std::vector<Particle> kept;
+  for (auto& p : particles_) {
+    const bool merged = std::any_of(kept.begin(), kept.end(), [&](const auto& k) {
+      return sameMode(k.path.back().pose, p.path.back().pose);
+    });
+    const bool full = kept.size() >= static_cast<std::size_t>(params_.max_particles);
+    if (merged || full || p.log_weight < std::log(params_.min_weight)) continue;
+    kept.push_back(std::move(p));
+    if (kept.size() == 1 && std::exp(kept.front().log_weight) >= params_.decided_weight) break;
+  }
+  particles_ = std::move(kept);
+  normalise();
+}
+
+void ParticleFilter::resample() {
+  const auto wanted = static_cast<std::size_t>(params_.fixed_particles);
+  if (particles_.size() == wanted &&
+      effectiveParticles() >= params_.resample_below * static_cast<double>(wanted))
+    return;
+  if (particles_.size() == wanted) ++resamplings_;
+  // Systematic resampling: one random offset, equally spaced picks.
+  const double first = std::generate_canonical<double, 53>(random_) / static_cast<double>(wanted);
+  std::vector<Particle> picked;
+  double cumulative = std::exp(particles_.front().log_weight);
+  std::size_t source = 0;
+  for (std::size_t k = 0; k < wanted; ++k) {
+    const double at = first + static_cast<double>(k) / static_cast<double>(wanted);
+    while (cumulative < at && source + 1 < particles_.size())
+      cumulative += std::exp(particles_[++source].log_weight);
+    picked.push_back(particles_[source]);
+    picked.back().log_weight = -std::log(static_cast<double>(wanted));
+  }
+  particles_ = std::move(picked);
+}
+
+double ParticleFilter::normal() {
+  // Box-Muller: std::normal_distribution gives other numbers in other standard libraries.
+  const double u = 1.0 - std::generate_canonical<double, 53>(random_);
+  const double v = std::generate_canonical<double, 53>(random_);
+  return std::sqrt(-2 * std::log(u)) * std::cos(2 * M_PI * v);
+}
+
+}  // namespace submap_slam

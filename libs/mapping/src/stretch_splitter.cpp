@@ -1,0 +1,105 @@
+#include <submap_slam/mapping/stretch_splitter.h>
+
+#include <mrpt/math/wrap2pi.h>
+#include <mrpt/poses/CPose2D.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace submap_slam {
+namespace {
+
+/** Below this the robot is taken to stand still (m, rad). */
+constexpr double kStillM = 1e-3, kStillRad = 1e-3;
+
+/** Bounds the memory of a robot that stands still for hours. */
+constexpr std::size_t kMaxFramesPerNode = 10;
+
+struct Motion {
+  double distance = 0, turn = 0;
+};
+
+Motion motionBetween(const Frame& a, const Frame& b) {
+  if (!a.odometry || !b.odometry) return {};
+  return {std::hypot(b.odometry->x - a.odometry->x, b.odometry->y - a.odometry->y),
+          std::abs(mrpt::math::wrapToPi(b.odometry->phi - a.odometry->phi))};
+}
+
+double seconds(const Frame& a, const Frame& b) {
+  return mrpt::Clock::toDouble(b.stamp) - mrpt::Clock::toDouble(a.stamp);
+}
+
+}  // namespace
+
+void describe(ParameterTable& table, StretchParams& p) {
+  table.section(
+      "submaps",
+      "Where submaps begin: decided from odometry and stamps alone, so that submaps are independent");
+  table.add("max_distance", p.max_distance, "m", {0.1, 1e6},
+            "Odometry path after which the next submap begins");
+  table.add("max_nodes", p.max_nodes, "", {2, 1e6}, "Frames with motion after which the next submap begins");
+  table.add("max_duration", p.max_duration, "s", {0, 1e9},
+            "Time after which the next submap begins; 0 = no limit");
+  table.add("warm_up_keys", p.warm_up_keys, "", {0, 1000},
+            "Key scans before its start that prepare a submap's matching map (never its evidence)");
+  table.add("key_distance", p.key_distance, "m", {1e-3, 100},
+            "Distance between key scans, by odometry, in the warm-up");
+  table.add("key_angle", p.key_angle, "rad", {1e-3, 3.1416},
+            "Turn between key scans, by odometry, in the warm-up");
+}
+
+bool StretchSplitter::closes(const Frame& frame) const {
+  const Frame& first = current_.frames[current_.warm_up];
+  const std::size_t own_frames = current_.frames.size() - current_.warm_up;
+  return distance_ >= params_.max_distance || nodes_ >= params_.max_nodes ||
+         own_frames >= kMaxFramesPerNode * static_cast<std::size_t>(params_.max_nodes) ||
+         (params_.max_duration > 0 && seconds(first, frame) >= params_.max_duration);
+}
+
+void StretchSplitter::startNext() {
+  Stretch next;
+  next.index = current_.index + 1;
+  const auto& frames = current_.frames;  // the last one is the first of the next stretch
+  std::size_t begin = frames.size() - 1;
+  double distance = 0, turn = 0;
+  for (int keys = 0; begin > 0 && keys < params_.warm_up_keys;) {
+    const Motion motion = motionBetween(frames[begin - 1], frames[begin]);
+    --begin;
+    distance += motion.distance;
+    turn += motion.turn;
+    const bool has_odometry = frames[begin].odometry.has_value();
+    if (distance < params_.key_distance && turn < params_.key_angle && has_odometry) continue;
+    ++keys;
+    distance = turn = 0;
+  }
+  next.warm_up = frames.size() - 1 - begin;
+  next.frames.assign(frames.begin() + static_cast<std::ptrdiff_t>(begin), frames.end());
+  current_ = std::move(next);
+  distance_ = 0;
+  nodes_ = 1;
+}
+
+std::optional<Stretch> StretchSplitter::push(Frame frame) {
+  const bool first = current_.frames.empty();
+  if (!first) {
+    const Motion motion = motionBetween(current_.frames.back(), frame);
+    distance_ += motion.distance;
+    if (!frame.odometry || motion.distance > kStillM || motion.turn > kStillRad) ++nodes_;
+  }
+  const bool close = !first && closes(frame);
+  current_.frames.push_back(std::move(frame));
+  if (!close) return std::nullopt;
+  Stretch done = current_;
+  startNext();
+  return done;
+}
+
+std::optional<Stretch> StretchSplitter::finish() {
+  if (current_.frames.empty()) return std::nullopt;
+  current_.last = true;
+  Stretch done = std::move(current_);
+  current_ = {};
+  return done;
+}
+
+}  // namespace submap_slam

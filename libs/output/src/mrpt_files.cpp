@@ -1,0 +1,112 @@
+#include <fmt/format.h>
+#include <mrpt/maps/COccupancyGridMap2D.h>
+#include <mrpt/maps/CSimpleMap.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/opengl/CEllipsoid2D.h>
+#include <mrpt/opengl/COpenGLScene.h>
+#include <mrpt/opengl/CSetOfLines.h>
+#include <mrpt/opengl/CSetOfObjects.h>
+#include <mrpt/opengl/CText.h>
+#include <mrpt/opengl/stock_objects.h>
+#include <mrpt/poses/CPose3DPDFGaussian.h>
+#include <submap_slam/output/mrpt_files.h>
+
+#include <stdexcept>
+
+#include "binary_file.h"
+
+namespace submap_slam {
+namespace {
+
+using mrpt::poses::CPosePDFGaussian;
+
+/** T_w_node with the uncertainty of T_w_s; the node in its submap counts as exact. */
+CPosePDFGaussian nodePose(const CPosePDFGaussian& frame, const SubmapNode& node) {
+  CPosePDFGaussian pose = frame;
+  // The overload for a plain pose leaves out the lever arm.
+  pose += CPosePDFGaussian(mrpt::poses::CPose2D(node.pose), mrpt::math::CMatrixDouble33::Zero());
+  return pose;
+}
+
+void insertKeyNodes(const GridSubmap& submap, const CPosePDFGaussian& frame, mrpt::maps::CSimpleMap& map) {
+  for (const auto& node : submap.nodes) {
+    if (!node.isKey()) continue;
+    const auto scans = mrpt::obs::CSensoryFrame::Create();
+    for (const auto& scan : node.scans) scans->insert(scan);
+    map.insert(mrpt::poses::CPose3DPDFGaussian::Create(nodePose(frame, node)), scans);
+  }
+}
+
+mrpt::opengl::CSetOfObjects::Ptr gridObject(const EvidenceGrid& map) {
+  auto grid = mrpt::opengl::CSetOfObjects::Create();
+  map.toOccupancyGrid().getVisualizationInto(*grid);
+  grid->setName("map");
+  return grid;
+}
+
+mrpt::opengl::CSetOfLines::Ptr trajectoryObject(const Trajectory& trajectory) {
+  auto line = mrpt::opengl::CSetOfLines::Create();
+  line->setName("trajectory");
+  line->setColor_u8(0x20, 0x60, 0xd0);
+  line->setLineWidth(2);
+  constexpr double kAboveGrid_m = 0.02;
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    const auto &a = trajectory[i - 1].pose, &b = trajectory[i].pose;
+    line->appendLine(a.x, a.y, kAboveGrid_m, b.x, b.y, kAboveGrid_m);
+  }
+  return line;
+}
+
+mrpt::opengl::CSetOfObjects::Ptr frameObject(std::size_t id, const CPosePDFGaussian& frame) {
+  auto corner = mrpt::opengl::stock_objects::CornerXYZSimple(1.0f, 2.0f);
+  corner->setName(fmt::format("{}", id));
+  corner->setPose(frame.mean);
+  // The label that an object can show for its name is white, invisible on free space.
+  auto label = mrpt::opengl::CText::Create(corner->getName());
+  label->setColor_u8(0xd0, 0x30, 0x30);
+  label->setLocation(0.1, 0.1, 0.5);
+  corner->insert(label);
+  return corner;
+}
+
+mrpt::opengl::CEllipsoid2D::Ptr ellipseObject(const CPosePDFGaussian& frame) {
+  constexpr double kAboveGrid_m = 0.03;
+  auto ellipse = mrpt::opengl::CEllipsoid2D::Create();
+  ellipse->setColor_u8(0xd0, 0x30, 0x30);
+  ellipse->setQuantiles(3);
+  ellipse->setCovMatrix(mrpt::math::CMatrixDouble22(frame.cov.blockCopy<2, 2>(0, 0)));
+  ellipse->setLocation(frame.mean.x(), frame.mean.y(), kAboveGrid_m);
+  return ellipse;
+}
+
+}  // namespace
+
+void writeGridMap(const std::string& file, const EvidenceGrid& map) {
+  writeBytes(file, compressedArchive(map.toOccupancyGrid()));
+}
+
+void writeSimpleMap(const std::string& file, const GridSubmaps& submaps,
+                    const std::vector<CPosePDFGaussian>& frames) {
+  if (submaps.size() != frames.size())
+    throw std::invalid_argument("writeSimpleMap: one frame for each submap is needed");
+  mrpt::maps::CSimpleMap map;
+  for (std::size_t i = 0; i < submaps.size(); ++i) insertKeyNodes(*submaps[i], frames[i], map);
+  writeBytes(file, compressedArchive(map));
+}
+
+void writeScene(const std::string& file, const EvidenceGrid& map, const Trajectory& trajectory,
+                const std::vector<CPosePDFGaussian>& frames) {
+  mrpt::opengl::COpenGLScene scene;
+  scene.insert(gridObject(map));
+  scene.insert(trajectoryObject(trajectory));
+  auto submaps = mrpt::opengl::CSetOfObjects::Create();
+  submaps->setName("submaps");
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    submaps->insert(frameObject(i, frames[i]));
+    submaps->insert(ellipseObject(frames[i]));
+  }
+  scene.insert(submaps);
+  writeBytes(file, compressedArchive(scene));
+}
+
+}  // namespace submap_slam

@@ -1,0 +1,89 @@
+#include "log_statistics.h"
+
+#include <mrpt/core/bits_math.h>
+#include <mrpt/math/wrap2pi.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "odometry_track.h"
+#include "scan_check.h"
+
+namespace submap_slam {
+namespace {
+
+constexpr double kBurstStep_s = 0.01;
+constexpr double kJump_m = 1.0;
+const double kJump_rad = mrpt::DEG2RAD(45.0);
+
+/** Some converters compute the sensor pose anew for each scan: differences that move no beam visibly are
+ * none. */
+bool samePose(const mrpt::math::TPose3D& a, const mrpt::math::TPose3D& b) {
+  constexpr double kSame = 1e-3;  // m and rad
+  const double turn = mrpt::math::wrapToPi(a.yaw - b.yaw);
+  return std::hypot(a.x - b.x, a.y - b.y) < kSame && std::abs(a.z - b.z) < kSame && std::abs(turn) < kSame;
+}
+
+bool sameGeometry(const mrpt::obs::CObservation2DRangeScan& a, const mrpt::obs::CObservation2DRangeScan& b) {
+  return a.getScanSize() == b.getScanSize() && a.aperture == b.aperture && a.maxRange == b.maxRange &&
+         a.rightToLeft == b.rightToLeft && samePose(a.sensorPose.asTPose(), b.sensorPose.asTPose());
+}
+
+}  // namespace
+
+void LogStatistics::add(Frame& frame, double min_range, LogReport& report) {
+  addStamp(frame, report);
+  addOdometry(frame, report);
+  for (const auto& scan : frame.scans) {
+    auto& scanner = report.scanners[scan->sensorLabel];
+    invalidateBeams(*scan, min_range, scanner);
+    auto& last = last_scan_[scan->sensorLabel];
+    if (last) {
+      const double step_s = secondsBetween(last->timestamp, scan->timestamp);
+      if (step_s >= 0 && step_s < kBurstStep_s) ++scanner.burst_steps;
+      if (!sameGeometry(*last, *scan)) ++scanner.geometry_changes;
+    }
+    addScan(*scan, scanner);
+    last = scan;
+  }
+  ++report.frames;
+}
+
+void LogStatistics::addStamp(const Frame& frame, LogReport& report) {
+  if (report.frames == 0) {
+    report.first_stamp = report.last_stamp = frame.stamp;
+  } else {
+    if (frame.stamp < last_stamp_) ++report.backward_stamps;
+    if (frame.stamp == last_stamp_) ++report.equal_stamps;
+    report.largest_gap_s = std::max(report.largest_gap_s, secondsBetween(last_stamp_, frame.stamp));
+    report.first_stamp = std::min(report.first_stamp, frame.stamp);
+    report.last_stamp = std::max(report.last_stamp, frame.stamp);
+  }
+  last_stamp_ = frame.stamp;
+}
+
+void LogStatistics::addOdometry(const Frame& frame, LogReport& report) {
+  if (frame.odometry) {
+    ++report.frames_with_odometry;
+    if (last_odometry_) {
+      const double step_m =
+          std::hypot(frame.odometry->x - last_odometry_->x, frame.odometry->y - last_odometry_->y);
+      const double step_rad = std::abs(mrpt::math::wrapToPi(frame.odometry->phi - last_odometry_->phi));
+      report.path_length_m += step_m;
+      report.largest_step_m = std::max(report.largest_step_m, step_m);
+      report.largest_step_rad = std::max(report.largest_step_rad, step_rad);
+      if (step_m > kJump_m || step_rad > kJump_rad) ++report.odometry_jumps;
+    }
+  }
+  last_odometry_ = frame.odometry;
+}
+
+void LogStatistics::addScan(const mrpt::obs::CObservation2DRangeScan& scan, ScannerReport& scanner) {
+  if (scanner.scans++ > 0) return;
+  scanner.beams = scan.getScanSize();
+  scanner.aperture = scan.aperture;
+  scanner.max_range = scan.maxRange;
+  scanner.sensor_pose = scan.sensorPose.asTPose();
+}
+
+}  // namespace submap_slam

@@ -1,0 +1,314 @@
+#include <fmt/format.h>
+#include <mrpt/obs/CActionCollection.h>
+#include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/obs/CObservationOdometry.h>
+#include <mrpt/obs/CRawlog.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/system/string_utils.h>
+#include <submap_slam/core/errors.h>
+#include <submap_slam/core/grid_submap.h>
+#include <submap_slam/rawlog/rawlog_reader.h>
+
+#include <charconv>
+#include <cmath>
+#include <set>
+
+#include "frame_assembler.h"
+#include "log_statistics.h"
+#include "object_stream.h"
+#include "scan_check.h"
+
+namespace submap_slam {
+namespace {
+
+using mrpt::obs::CActionRobotMovement2D;
+using mrpt::obs::CObservation2DRangeScan;
+
+/** A place in the log: an entry, or seconds from the first stamp. */
+struct LogPlace {
+  std::optional<uint64_t> entry;
+  std::optional<double> seconds;
+};
+
+LogPlace parsePlace(const std::string& key, const std::string& text) {
+  LogPlace place;
+  if (text.empty()) return place;
+  const bool timed = text.back() == 's';
+  const char *begin = text.data(), *end = begin + text.size() - (timed ? 1 : 0);
+  const auto parse = [&](auto& value) {
+    const auto [rest, error] = std::from_chars(begin, end, value);
+    return error == std::errc() && rest == end && begin != end;
+  };
+  const bool good =
+      timed ? parse(place.seconds.emplace()) && std::isfinite(*place.seconds) && *place.seconds >= 0
+            : parse(place.entry.emplace());
+  if (!good)
+    throw ConfigError(
+        fmt::format("[reader] {} = {}: expected an entry number such as 1200, or seconds from the first "
+                    "stamp such as 60s",
+                    key, text));
+  return place;
+}
+
+std::set<std::string> parseLabels(const std::string& list) {
+  std::vector<std::string> labels;
+  mrpt::system::tokenize(list, ",", labels);
+  std::set<std::string> result;
+  for (const auto& label : labels)
+    if (const auto trimmed = mrpt::system::trim(label); !trimmed.empty()) result.insert(trimmed);
+  return result;
+}
+
+bool isFinite(const mrpt::math::TPose2D& pose) {
+  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.phi);
+}
+
+/** The movement to use of those in an action collection: odometry before estimates by scan matching. */
+CActionRobotMovement2D::Ptr chooseMovement(const mrpt::obs::CActionCollection& actions) {
+  CActionRobotMovement2D::Ptr chosen;
+  for (const auto& action : actions) {
+    const auto movement = std::dynamic_pointer_cast<CActionRobotMovement2D>(action.get_ptr());
+    if (!movement) continue;
+    if (movement->estimationMethod == CActionRobotMovement2D::emOdometry) return movement;
+    if (!chosen) chosen = movement;
+  }
+  return chosen;
+}
+
+std::string nameOf(const mrpt::rtti::CObject& object) { return object.GetRuntimeClass()->className; }
+
+}  // namespace
+
+void describe(ParameterTable& table, ReaderParams& params) {
+  table.section("reader", "Reading rawlogs");
+  table.add("sensor_labels", params.sensor_labels,
+            "Sensor labels of the scanners to use, separated by commas; empty: all 2D scanners");
+  table.add("min_range", params.min_range, "m", {0, 1e3},
+            "Ranges below this are invalid: the robot's own body, or a zero that marks an error");
+  table.add("from", params.from,
+            "Where to start: a rawlog entry such as 1200, or seconds from the first stamp such as 60s; "
+            "empty: at the "
+            "start");
+  table.add("to", params.to, "Last rawlog entry, or seconds from the first stamp, to use; empty: to the end");
+}
+
+struct RawlogReader::Impl {
+  Impl(const std::string& file, const ReaderParams& reader_params)
+      : params(reader_params),
+        labels(parseLabels(params.sensor_labels)),
+        from(parsePlace("from", params.from)),
+        to(parsePlace("to", params.to)),
+        stream(file) {
+    if (!(params.min_range >= 0))
+      throw ConfigError(fmt::format("[reader] min_range = {}: must not be negative", params.min_range));
+    report.file = file;
+    report.file_bytes = stream.fileBytes();
+  }
+
+  ReaderParams params;
+  std::set<std::string> labels;
+  LogPlace from, to;
+  ObjectStream stream;
+  FrameAssembler assembler;
+  LogStatistics statistics;
+  LogReport report;
+  std::optional<mrpt::Clock::time_point> first_stamp;
+  bool started = false;      ///< `from` was reached
+  bool source_done = false;  ///< nothing more to read
+  bool ended = false;        ///< nothing more to deliver, findings are made
+
+  std::optional<Frame> next();
+  void readEntry();
+  void take(const mrpt::serialization::CSerializable::Ptr& object);
+  void takeActions(const mrpt::obs::CActionCollection& actions);
+  void takeSensoryFrame(const mrpt::obs::CSensoryFrame& sensory_frame);
+  void takeObservation(const mrpt::obs::CObservation::Ptr& observation);
+  void takeReading(const mrpt::obs::CObservationOdometry& reading);
+  void takeScan(const CObservation2DRangeScan::Ptr& scan);
+  bool accept(const CObservation2DRangeScan& scan);
+  void noteStamp(mrpt::Clock::time_point stamp);
+  bool isBehind(const LogPlace& place, const LoggedFrame& logged, bool inclusive) const;
+  void end(const std::optional<LogDamage>& found);
+  std::string whyNoFrames() const;
+};
+
+std::optional<Frame> RawlogReader::Impl::next() {
+  while (!ended) {
+    if (auto logged = assembler.pop()) {
+      if (isBehind(to, *logged, false)) {
+        end(std::nullopt);  // what lies behind `to` does not matter, damage included
+        break;
+      }
+      started = started || isBehind(from, *logged, true);
+      if (!started) continue;
+      statistics.add(logged->frame, params.min_range, report);
+      return std::move(logged->frame);
+    }
+    if (source_done) break;
+    readEntry();
+  }
+  if (!ended) end(stream.damage());
+  return std::nullopt;
+}
+
+/** Whether the frame is behind the place (or, if inclusive, at it). */
+bool RawlogReader::Impl::isBehind(const LogPlace& place, const LoggedFrame& logged, bool inclusive) const {
+  if (place.entry) return logged.entry > *place.entry || (inclusive && logged.entry == *place.entry);
+  if (!place.seconds) return inclusive;  // no `from`: every frame is behind it; no `to`: none is
+  const double seconds = secondsBetween(first_stamp.value_or(logged.frame.stamp), logged.frame.stamp);
+  return seconds > *place.seconds || (inclusive && seconds == *place.seconds);
+}
+
+void RawlogReader::Impl::readEntry() {
+  const auto object = stream.next();
+  if (object) {
+    take(object);
+  } else {
+    source_done = true;
+    assembler.finish();
+  }
+  report.entries = stream.entries();
+  report.bytes_read = stream.fileBytesRead();
+}
+
+void RawlogReader::Impl::take(const mrpt::serialization::CSerializable::Ptr& object) {
+  if (const auto observation = std::dynamic_pointer_cast<mrpt::obs::CObservation>(object)) {
+    takeObservation(observation);
+    return;
+  }
+  ++report.classes[nameOf(*object)];
+  if (const auto actions = std::dynamic_pointer_cast<mrpt::obs::CActionCollection>(object))
+    takeActions(*actions);
+  else if (const auto sensory_frame = std::dynamic_pointer_cast<mrpt::obs::CSensoryFrame>(object))
+    takeSensoryFrame(*sensory_frame);
+  else if (std::dynamic_pointer_cast<mrpt::obs::CRawlog>(object))
+    ++report.nested_logs;
+}
+
+void RawlogReader::Impl::takeActions(const mrpt::obs::CActionCollection& actions) {
+  const auto movement = chooseMovement(actions);
+  if (!movement) return;
+  const bool by_odometry = movement->estimationMethod == CActionRobotMovement2D::emOdometry;
+  // With emOdometry the log stores the raw increment; the pose change is drawn anew from the motion model
+  // when it is read.
+  const auto increment = by_odometry ? movement->rawOdometryIncrementReading.asTPose()
+                                     : movement->poseChange->getMeanVal().asTPose();
+  if (!isFinite(increment) || !assembler.addIncrement(increment)) {
+    ++report.ignored_odometry;
+    return;
+  }
+  ++report.odometry_readings;
+  if (!by_odometry) ++report.matched_increments;
+}
+
+void RawlogReader::Impl::takeSensoryFrame(const mrpt::obs::CSensoryFrame& sensory_frame) {
+  assembler.closeFrame();
+  for (const auto& observation : sensory_frame) takeObservation(observation);
+  assembler.closeFrame();
+}
+
+void RawlogReader::Impl::takeObservation(const mrpt::obs::CObservation::Ptr& observation) {
+  ++report.classes[nameOf(*observation)];
+  if (const auto scan = std::dynamic_pointer_cast<CObservation2DRangeScan>(observation))
+    takeScan(scan);
+  else if (const auto reading = std::dynamic_pointer_cast<mrpt::obs::CObservationOdometry>(observation))
+    takeReading(*reading);
+}
+
+void RawlogReader::Impl::takeReading(const mrpt::obs::CObservationOdometry& reading) {
+  noteStamp(reading.timestamp);
+  const auto pose = reading.odometry.asTPose();
+  if (isFinite(pose) && assembler.addReading(reading.timestamp, pose))
+    ++report.odometry_readings;
+  else
+    ++report.ignored_odometry;
+}
+
+void RawlogReader::Impl::takeScan(const CObservation2DRangeScan::Ptr& scan) {
+  if (!accept(*scan)) return;
+  noteStamp(scan->timestamp);
+  if (scan->timestamp == mrpt::Clock::time_point()) ++report.stampless_scans;
+  assembler.addScan(scan, stream.entries() - 1);
+}
+
+bool RawlogReader::Impl::accept(const CObservation2DRangeScan& scan) {
+  if (!labels.empty() && labels.count(scan.sensorLabel) == 0) {
+    ++report.skipped_scans_label;
+    ++report.skipped_labels[scan.sensorLabel];
+    return false;
+  }
+  switch (judge(scan)) {
+    case ScanVerdict::kEmpty:
+      ++report.skipped_scans_empty;
+      return false;
+    case ScanVerdict::kTilted:
+      ++report.skipped_scans_tilted;
+      return false;
+    case ScanVerdict::kBadGeometry:
+      ++report.skipped_scans_bad;
+      return false;
+    case ScanVerdict::kUsable:
+      break;
+  }
+  return true;
+}
+
+void RawlogReader::Impl::noteStamp(mrpt::Clock::time_point stamp) {
+  if (!first_stamp && stamp != mrpt::Clock::time_point()) first_stamp = stamp;
+}
+
+void RawlogReader::Impl::end(const std::optional<LogDamage>& found) {
+  ended = true;
+  report.damage = found;
+  report.findings = assess(report);
+  if (report.damage) throw InputError(report.damage->text);
+  if (report.frames == 0) throw InputError(fmt::format("{}: {}", report.file, whyNoFrames()));
+}
+
+std::string RawlogReader::Impl::whyNoFrames() const {
+  if (report.file_bytes == 0) return "the file is empty, expected a rawlog";
+  if (report.entries == 0) return "holds no object, expected a rawlog";
+  if (const auto submaps = report.classes.find("submap_slam::GridSubmap"); submaps != report.classes.end())
+    return "holds submaps, expected a rawlog with 2D laser scans";
+  std::string content;
+  for (const auto& [name, count] : report.classes)
+    content += fmt::format("{}{} {}", content.empty() ? "" : ", ", count, name);
+  if (!params.from.empty() || !params.to.empty())
+    return fmt::format("no usable 2D laser scan from '{}' to '{}'; {} entries were read ({})", params.from,
+                       params.to, report.entries, content);
+  if (report.skipped_scans_label > 0) {
+    std::string found;
+    for (const auto& [label, count] : report.skipped_labels)
+      found += fmt::format("{}'{}'", found.empty() ? "" : ", ", label);
+    return fmt::format("no 2D laser scan with [reader] sensor_labels = {}; the log has {}",
+                       params.sensor_labels, found);
+  }
+  return fmt::format("no usable 2D laser scan; the file holds {}", content);
+}
+
+RawlogReader::RawlogReader(const std::string& file, const ReaderParams& params)
+    : impl_(std::make_unique<Impl>(file, params)) {}
+RawlogReader::~RawlogReader() = default;
+RawlogReader::RawlogReader(RawlogReader&&) noexcept = default;
+RawlogReader& RawlogReader::operator=(RawlogReader&&) noexcept = default;
+
+std::optional<Frame> RawlogReader::next() { return impl_->next(); }
+
+double RawlogReader::fractionRead() const { return impl_->ended ? 1.0 : impl_->stream.fractionRead(); }
+
+const LogReport& RawlogReader::report() const { return impl_->report; }
+
+LogReport checkLog(const std::string& file, const ReaderParams& params) {
+  RawlogReader reader(file, params);
+  try {
+    while (reader.next()) {
+    }
+  } catch (const InputError& error) {
+    LogReport report = reader.report();
+    if (!report.damage) report.findings.insert(report.findings.begin(), {Severity::kError, error.what()});
+    return report;
+  }
+  return reader.report();
+}
+
+}  // namespace submap_slam

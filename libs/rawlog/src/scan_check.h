@@ -1,0 +1,16 @@
+#pragma once
+
+#include <mrpt/obs/CObservation2DRangeScan.h>
+#include <submap_slam/rawlog/log_report.h>
+
+namespace submap_slam {
+
+enum class ScanVerdict { kUsable, kEmpty, kTilted, kBadGeometry };
+
+/** Whether the scan is one of a horizontal scanner with beams and a geometry that makes sense. */
+ScanVerdict judge(const mrpt::obs::CObservation2DRangeScan& scan);
+
+/** Marks beams without a usable range as invalid (see RawlogReader) and adds them to the counts. */
+void invalidateBeams(mrpt::obs::CObservation2DRangeScan& scan, double min_range, ScannerReport& counts);
+
+}  // namespace submap_slam

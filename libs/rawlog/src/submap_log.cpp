@@ -1,0 +1,171 @@
+#include <fmt/format.h>
+#include <mrpt/io/CMemoryStream.h>
+#include <mrpt/serialization/CArchive.h>
+#include <submap_slam/core/errors.h>
+#include <submap_slam/rawlog/submap_log.h>
+
+#include <filesystem>
+
+#include "durable_file.h"
+#include "object_stream.h"
+
+namespace submap_slam {
+namespace {
+
+/** Throws InputError unless the file starts with the submaps that the side-car says. */
+void checkFront(const std::string& file, const ResumeState& state) {
+  if (state.submap_bytes == 0) return;
+  const auto mismatch = [&](const std::string& why) {
+    return InputError(fmt::format("{}: cannot be resumed, {} says {} submaps in {} bytes: {}", file,
+                                  resumeFileOf(file), state.submaps_done, state.submap_bytes, why));
+  };
+  SubmapLogReader reader(file);
+  try {
+    for (uint64_t k = 0; k < state.submaps_done; ++k)
+      if (!reader.next()) throw mismatch(fmt::format("the file ends after {}", k));
+  } catch (const InputError& error) {
+    throw mismatch(error.what());
+  }
+  if (reader.validBytes() != state.submap_bytes)
+    throw mismatch(fmt::format("they take {} bytes", reader.validBytes()));
+}
+
+/** The identity of a run without its progress. */
+ResumeState newRun(const ResumeState& run) {
+  ResumeState state;
+  state.version = run.version;
+  state.config_hash = run.config_hash;
+  state.log = run.log;
+  state.log_bytes = run.log_bytes;
+  return state;
+}
+
+}  // namespace
+
+struct SubmapLogReader::Impl {
+  explicit Impl(const std::string& name) : file(name), stream(name) {}
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(fmt::format("{} (the {} submaps before it are valid)", what, submaps));
+  }
+
+  std::string file;
+  ObjectStream stream;
+  uint64_t submaps = 0, valid_bytes = 0;
+};
+
+SubmapLogReader::SubmapLogReader(const std::string& file) : impl_(std::make_unique<Impl>(file)) {}
+SubmapLogReader::~SubmapLogReader() = default;
+SubmapLogReader::SubmapLogReader(SubmapLogReader&&) noexcept = default;
+SubmapLogReader& SubmapLogReader::operator=(SubmapLogReader&&) noexcept = default;
+
+GridSubmap::Ptr SubmapLogReader::next() {
+  auto& stream = impl_->stream;
+  const auto object = stream.next();
+  if (stream.damage()) impl_->fail(stream.damage()->text);
+  if (!object) return nullptr;
+  const auto submap = std::dynamic_pointer_cast<GridSubmap>(object);
+  if (!submap)
+    impl_->fail(fmt::format("{}: entry {} is a {}, expected a GridSubmap", impl_->file, stream.entries() - 1,
+                            object->GetRuntimeClass()->className));
+  if (stream.cutBehindLast())
+    impl_->fail(fmt::format("{}: entry {}: its gzip member is incomplete or corrupt", impl_->file,
+                            stream.entries() - 1));
+  ++impl_->submaps;
+  impl_->valid_bytes = stream.validBytes();
+  return submap;
+}
+
+uint64_t SubmapLogReader::validBytes() const { return impl_->valid_bytes; }
+double SubmapLogReader::fractionRead() const { return impl_->stream.fractionRead(); }
+
+GridSubmaps readSubmaps(const std::string& file) {
+  SubmapLogReader reader(file);
+  GridSubmaps submaps;
+  while (auto submap = reader.next()) submaps.push_back(std::move(submap));
+  if (submaps.empty()) throw InputError(fmt::format("{}: holds no submaps", file));
+  return submaps;
+}
+
+RecoveredSubmaps recoverSubmaps(const std::string& file) {
+  SubmapLogReader reader(file);
+  RecoveredSubmaps recovered;
+  try {
+    while (auto submap = reader.next()) recovered.submaps.push_back(std::move(submap));
+  } catch (const InputError& error) {
+    recovered.damage = error.what();
+  }
+  recovered.valid_bytes = reader.validBytes();
+  return recovered;
+}
+
+SubmapLogWriter::SubmapLogWriter(std::string file, const ResumeState& run)
+    : file_(std::move(file)), state_(newRun(run)) {
+  // a side-car of an earlier run must not vouch for the new, empty file
+  std::error_code ignored;
+  std::filesystem::remove(resumeFileOf(file_), ignored);
+  out_ = std::make_unique<DurableFile>(file_, 0);
+  out_->sync();
+  writeResumeState(file_, state_);
+}
+
+SubmapLogWriter SubmapLogWriter::resume(const std::string& file, const ResumeState& run) {
+  const auto state = readResumeState(file);
+  if (!state) return SubmapLogWriter(file, run);
+  if (const auto key = runDifference(*state, run); !key.empty())
+    throw InputError(
+        fmt::format("{}: cannot be resumed, it belongs to a run with another {}", resumeFileOf(file), key));
+  checkFront(file, *state);
+  SubmapLogWriter writer;
+  writer.file_ = file;
+  writer.state_ = *state;
+  if (!state->complete) writer.out_ = std::make_unique<DurableFile>(file, state->submap_bytes);
+  return writer;
+}
+
+SubmapLogWriter::SubmapLogWriter() = default;
+SubmapLogWriter::~SubmapLogWriter() = default;
+SubmapLogWriter::SubmapLogWriter(SubmapLogWriter&&) noexcept = default;
+SubmapLogWriter& SubmapLogWriter::operator=(SubmapLogWriter&&) noexcept = default;
+
+void SubmapLogWriter::appendStretch(const GridSubmaps& submaps) {
+  if (state_.complete) throw std::logic_error("SubmapLogWriter: the file is already complete");
+  for (const auto& submap : submaps) {
+    const auto member = gzipMember(*submap);
+    out_->append(member.data(), member.size());
+    state_.submap_bytes += member.size();
+    ++state_.submaps_done;
+  }
+  if (!submaps.empty()) out_->sync();
+  ++state_.stretches_done;
+  writeResumeState(file_, state_);
+}
+
+void SubmapLogWriter::finish() {
+  state_.complete = true;
+  writeResumeState(file_, state_);
+}
+
+std::vector<uint8_t> gzipMember(const mrpt::serialization::CSerializable& object) {
+  mrpt::io::CMemoryStream raw;
+  mrpt::serialization::archiveFrom(raw) << object;
+
+  z_stream deflater{};
+  const int gzip_window = 15 + 16, memory_level = 8;  // with these zlib writes a gzip header without a time
+  if (deflateInit2(&deflater, Z_DEFAULT_COMPRESSION, Z_DEFLATED, gzip_window, memory_level,
+                   Z_DEFAULT_STRATEGY) != Z_OK)
+    throw std::bad_alloc();
+  const auto raw_bytes = raw.getTotalBytesCount();
+  std::vector<uint8_t> member(deflateBound(&deflater, raw_bytes));
+  deflater.next_in = static_cast<Bytef*>(raw.getRawBufferData());
+  deflater.avail_in = static_cast<uInt>(raw_bytes);
+  deflater.next_out = member.data();
+  deflater.avail_out = static_cast<uInt>(member.size());
+  const int status = deflate(&deflater, Z_FINISH);
+  member.resize(deflater.total_out);
+  deflateEnd(&deflater);
+  if (status != Z_STREAM_END) throw OutputError("a submap is too large to be packed");
+  return member;
+}
+
+}  // namespace submap_slam

@@ -1,0 +1,141 @@
+#include "grid_gauss_newton.h"
+
+#include <submap_slam/core/errors.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace submap_slam {
+
+IMPLEMENTS_MRPT_OBJECT(GridGaussNewton, SubmapJoiner, submap_slam)
+
+namespace {
+
+using namespace grid_joining;
+
+JacobianKind jacobianNamed(const std::string& name) {
+  if (name == "paper") return JacobianKind::kPaper;
+  return name == "surface" ? JacobianKind::kSurface : JacobianKind::kVariableProjection;
+}
+
+SolverKind solverNamed(const std::string& name) {
+  if (name == "full") return SolverKind::kFull;
+  return name == "explicit_pose_only" ? SolverKind::kExplicitPoseOnly : SolverKind::kPoseOnly;
+}
+
+void requireEqualResolutions(const GridSubmaps& submaps) {
+  const double first = submaps.front()->evidence.resolution();
+  for (const auto& submap : submaps) {
+    const double other = submap->evidence.resolution();
+    if (std::abs(other - first) > 1e-6 * first)
+      throw InputError("submap " + std::to_string(submap->id) + " has cells of " + std::to_string(other) +
+                       " m; expected " + std::to_string(first) + " m as in submap " +
+                       std::to_string(submaps.front()->id));
+  }
+}
+
+Frames meansOf(const std::vector<mrpt::poses::CPosePDFGaussian>& frames) {
+  Frames means;
+  for (const auto& frame : frames) means.push_back(frame.mean.asTPose());
+  return means;
+}
+
+/** Share of the work done after an iteration: levels count alike, and so do iterations up to the cap. */
+double shareDone(int levels, int level, int iteration_of_level, int max_iterations) {
+  const double share = static_cast<double>(iteration_of_level) / max_iterations;
+  return std::min(1.0, (levels - 1 - level + share) / levels);
+}
+
+}  // namespace
+
+void GridGaussNewton::describe(ParameterTable& table) {
+  const std::vector<std::string> jacobians{"paper", "variable_projection", "surface"};
+  table.section(name(), "Joint optimisation of submap frames and occupancy map (Wang, Zhao, Huang 2025)");
+  table.add("levels", levels_, "", {1, 10},
+            "Levels of the pyramid of 2 x 2 sums; 1 works at the finest level only.");
+  table.add("finest_level", finest_level_, "", {0, 6},
+            "Level that counts as the finest; each halves the resolution and saves three quarters of memory "
+            "and time.");
+  table.add("solver", solver_,
+            "How a step is found: summed cell by cell, by explicit sparse matrices (eq. 13), or with the map "
+            "as unknown "
+            "(eq. 6); the step is the same.",
+            {"pose_only", "explicit_pose_only", "full"});
+  table.add("jacobian", jacobian_,
+            "Derivative at the finest level: eq. (13) as published, the exact gradient of the reduced cost, "
+            "or surfaces "
+            "only.",
+            jacobians);
+  table.add("coarse_jacobian", coarse_jacobian_, "Derivative at all other levels.", jacobians);
+  table.add("max_iterations", max_iterations_, "", {1, 10000}, "Limit of iterations at each level.");
+  table.add("step_tolerance", step_tolerance_, "m", {0, 1},
+            "Converged when no frame moves farther and none turns more than turn_tolerance; doubled at each "
+            "coarser "
+            "level.");
+  table.add("turn_tolerance", turn_tolerance_, "rad", {0, 1}, "See step_tolerance.");
+  table.add("cost_tolerance", cost_tolerance_, "", {0, 1},
+            "Converged when the objective falls by a smaller share.");
+  table.add("prior_weight", prior_weight_, "", {0, 1e9},
+            "Factor on the information of the submaps' end poses, which hold what the evidence does not show "
+            "(the length "
+            "of corridors); 0 ignores them.");
+  table.add(
+      "correlation_length", correlation_length_, "m", {0, 100},
+      "Distance over which cells err together; the evidence counts as one witness for each such square.");
+  table.add("lattice_angle", lattice_angle_, "rad", {-3.2, 3.2},
+            "Direction of the lattice on which evidence is compared; should not be parallel to walls.");
+}
+
+void GridGaussNewton::validate() const {
+  if (levels_ + finest_level_ > 12)
+    throw ConfigError("[grid_gauss_newton] levels + finest_level must not exceed 12");
+}
+
+CoarseToFineOptions GridGaussNewton::options() const {
+  CoarseToFineOptions o;
+  o.iteration.max_iterations = max_iterations_;
+  o.iteration.max_step_m = step_tolerance_;
+  o.iteration.max_step_rad = turn_tolerance_;
+  o.iteration.cost_decrease = cost_tolerance_;
+  o.solver = solverNamed(solver_);
+  o.finest_jacobian = jacobianNamed(jacobian_);
+  o.coarse_jacobian = jacobianNamed(coarse_jacobian_);
+  o.lattice_angle = lattice_angle_;
+  o.correlation_length = correlation_length_;
+  return o;
+}
+
+JoinedMap GridGaussNewton::join(const GridSubmaps& submaps, const JoinedMap& initial,
+                                const ProgressCallback& progress) const {
+  requireEqualResolutions(submaps);
+  JoinedMap joined;
+  joined.frames = initial.frames;
+  joined.constraints = initial.constraints;
+  if (submaps.size() < 2) {
+    joined.status = JoinStatus::kNothingToJoin;
+    joined.reason = "there is only one submap";
+    return joined;
+  }
+
+  int level = levels_ - 1, in_level = 0;
+  const auto report = [&](const JoinIteration& i) {
+    in_level = i.level == level ? in_level + 1 : 1;
+    level = i.level;
+    return !progress || progress(shareDone(levels_, level, in_level, max_iterations_), "joining grids");
+  };
+  const auto pyramid = buildPyramid(submaps, finest_level_, levels_);
+  const CoarseToFineResult result = joinCoarseToFine(pyramid, meansOf(initial.frames),
+                                                     ChainPrior(submaps, prior_weight_), options(), report);
+  joined.status = result.status;
+  joined.reason = result.reason;
+  joined.objective = result.objective;
+  joined.iterations = result.iterations;
+  if (result.status == JoinStatus::kNothingToJoin || result.status == JoinStatus::kFailed) return joined;
+  for (std::size_t i = 0; i < joined.frames.size(); ++i) {
+    joined.frames[i].mean = mrpt::poses::CPose2D(result.frames[i]);
+    if (result.covariances[i]) joined.frames[i].cov = *result.covariances[i];
+  }
+  return joined;
+}
+
+}  // namespace submap_slam

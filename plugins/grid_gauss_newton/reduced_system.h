@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+
+#include "jacobian.h"
+#include "lattice.h"
+#include "pose_system.h"
+#include "pyramid.h"
+
+namespace submap_slam::grid_joining {
+
+/** The joint problem after the map has been eliminated (eq. 13), summed over all cells that two or more
+ * submaps see. */
+struct ReducedSystem {
+  explicit ReducedSystem(std::size_t frames) : system(frames) {}
+
+  /** Σ_j Σ_i (L_i − w_i m_j)², w_i = N_i: f of eq. (4) at the best map for these frames. */
+  double cost = 0;
+
+  /** Σ_j Σ_{i<k} w_i² w_k² / Σ w²: the weight with which differences of two submaps enter the cost. cost /
+   * overlap_weight is the mean squared difference of log-odds per hit, comparable between frames with
+   * different overlap. */
+  double overlap_weight = 0;
+
+  double energy = 0;             ///< Σ_j Σ_i L_i²
+  std::size_t observations = 0;  ///< (cell, submap) pairs in the sums
+  std::size_t cells = 0;         ///< cells in the sums
+
+  PoseSystem system;  ///< J^T(I − ww^T/W)J and J^T(L − w m)
+
+  void add(const ReducedSystem& other);
+};
+
+/** Evaluates cost and normal equations at the given frames, one (1×3) row J_i per cell and submap:
+ *    block(i,k) += J_iᵀ(δ_ik − w_i w_k/W) J_k,  gradient(i) += J_iᵀ(L_i − w_i m),  W = Σ w²,  m = Σ w_k
+ * L_k/W. Parallel; the sums are taken in a fixed order, so the result has the same bits for any number of
+ * threads. */
+ReducedSystem reduce(const EvidenceLevels& level, const Frames& frames, JacobianKind jacobian,
+                     double lattice_angle);
+
+}  // namespace submap_slam::grid_joining

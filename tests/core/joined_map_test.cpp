@@ -1,0 +1,244 @@
+#include <gtest/gtest.h>
+#include <submap_slam/core/joined_map.h>
+#include <tbb/global_control.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+namespace submap_slam {
+namespace {
+
+using mrpt::math::TPose2D;
+using mrpt::poses::CPosePDFGaussian;
+
+constexpr double kQuarterTurn = M_PI / 2;
+
+CPosePDFGaussian gaussian(const TPose2D& mean, const Eigen::Matrix3d& cov = Eigen::Matrix3d::Zero()) {
+  CPosePDFGaussian pdf;
+  pdf.mean = mrpt::poses::CPose2D(mean);
+  pdf.cov = cov;
+  return pdf;
+}
+
+/** A submap of 2 m × 2 m with 0.1 m cells; set() fills cells. */
+GridSubmap::Ptr emptySubmap() {
+  auto submap = GridSubmap::Create();
+  submap->evidence = EvidenceGrid(-1, 1, -1, 1, 0.1);
+  return submap;
+}
+
+void set(GridSubmap& submap, double x, double y, float log_odds, float hits) {
+  *submap.evidence.log_odds.cellByPos(x, y) = log_odds;
+  *submap.evidence.hits.cellByPos(x, y) = hits;
+}
+
+float logOddsAt(const EvidenceGrid& map, double x, double y) {
+  const float* cell = map.log_odds.cellByPos(x, y);
+  return cell ? *cell : 0;
+}
+float hitsAt(const EvidenceGrid& map, double x, double y) {
+  const float* cell = map.hits.cellByPos(x, y);
+  return cell ? *cell : 0;
+}
+
+Eigen::Matrix3d someCovariance(double scale) {
+  Eigen::Matrix3d cov;
+  cov << 0.04, 0.01, 0.002, 0.01, 0.09, -0.003, 0.002, -0.003, 0.01;
+  return scale * cov;
+}
+
+/** Covariance of a ∘ b by numerical derivatives. */
+Eigen::Matrix3d composedCovariance(const CPosePDFGaussian& a, const CPosePDFGaussian& b) {
+  Eigen::Matrix<double, 3, 6> jacobian;
+  const double h = 1e-6;
+  for (int k = 0; k < 6; ++k) {
+    const auto composed = [&](double offset) {
+      TPose2D first = a.mean.asTPose(), second = b.mean.asTPose();
+      (k < 3 ? first : second)[static_cast<std::size_t>(k % 3)] += offset;
+      return first + second;
+    };
+    const TPose2D high = composed(h), low = composed(-h);
+    jacobian.col(k) = Eigen::Vector3d(high.x - low.x, high.y - low.y, high.phi - low.phi) / (2 * h);
+  }
+  Eigen::Matrix<double, 6, 6> cov = Eigen::Matrix<double, 6, 6>::Zero();
+  cov.topLeftCorner<3, 3>() = a.cov.asEigen();
+  cov.bottomRightCorner<3, 3>() = b.cov.asEigen();
+  return jacobian * cov * jacobian.transpose();
+}
+
+GridSubmaps threeLinkedSubmaps() {
+  GridSubmaps submaps{emptySubmap(), emptySubmap(), emptySubmap()};
+  for (uint32_t k = 0; k < 3; ++k) {
+    submaps[k]->id = 10 + k;
+    submaps[k]->has_successor = k < 2;
+  }
+  submaps[0]->end_pose = gaussian({2, 1, 0.7}, someCovariance(1));
+  submaps[1]->end_pose = gaussian({-1, 3, -0.4}, someCovariance(0.5));
+  return submaps;
+}
+
+TEST(ChainSubmaps, ComposesEndPosesWithTheirCovariance) {
+  const GridSubmaps submaps = threeLinkedSubmaps();
+  const JoinedMap chain = chainSubmaps(submaps);
+  ASSERT_EQ(chain.frames.size(), 3u);
+  EXPECT_EQ(chain.status, JoinStatus::kChained);
+  EXPECT_EQ(chain.frames[0].mean.asTPose(), TPose2D(0, 0, 0));
+  EXPECT_EQ(chain.frames[0].cov.asEigen().norm(), 0);
+  const TPose2D last = chain.frames[2].mean.asTPose();
+  EXPECT_NEAR(last.x, 2 - std::cos(0.7) - 3 * std::sin(0.7), 1e-12);
+  EXPECT_NEAR(last.y, 1 - std::sin(0.7) + 3 * std::cos(0.7), 1e-12);
+  EXPECT_NEAR(last.phi, 0.3, 1e-12);
+  EXPECT_LT((chain.frames[1].cov.asEigen() - submaps[0]->end_pose.cov.asEigen()).norm(), 1e-12);
+  const Eigen::Matrix3d expected = composedCovariance(submaps[0]->end_pose, submaps[1]->end_pose);
+  EXPECT_LT((chain.frames[2].cov.asEigen() - expected).norm(), 1e-7);
+}
+
+TEST(ChainSubmaps, ListsTheLinksById) {
+  const JoinedMap chain = chainSubmaps(threeLinkedSubmaps());
+  ASSERT_EQ(chain.constraints.size(), 2u);
+  EXPECT_EQ(chain.constraints[1].from, 11u);
+  EXPECT_EQ(chain.constraints[1].to, 12u);
+  EXPECT_FALSE(chain.constraints[1].inter);
+  EXPECT_TRUE(chain.constraints[1].accepted);
+  EXPECT_EQ(chain.constraints[1].T_a_b.mean.asTPose(), TPose2D(-1, 3, -0.4));
+}
+
+TEST(ChainSubmaps, GoesOnAtTheLastPoseAcrossAGap) {
+  GridSubmaps submaps = threeLinkedSubmaps();
+  submaps[1]->has_successor = false;
+  const JoinedMap chain = chainSubmaps(submaps);
+  EXPECT_EQ(chain.constraints.size(), 1u);
+  EXPECT_NEAR(chain.frames[2].mean.phi(), 0.3, 1e-12);
+}
+
+TEST(ChainSubmaps, OneSubmapLiesAtTheOrigin) {
+  GridSubmap::Ptr only = emptySubmap();
+  only->has_successor = true;  // its successor was not given
+  const JoinedMap chain = chainSubmaps({only});
+  EXPECT_EQ(chain.frames.size(), 1u);
+  EXPECT_TRUE(chain.constraints.empty());
+}
+
+TEST(TrajectoryOf, PlacesTheNodesOfEverySubmap) {
+  GridSubmaps submaps{emptySubmap(), emptySubmap()};
+  SubmapNode node;
+  node.stamp = mrpt::Clock::fromDouble(100);
+  node.pose = {1, 0, 0.2};
+  submaps[0]->nodes = {node};
+  node.stamp = mrpt::Clock::fromDouble(101);
+  node.pose = {0, 2, 0};
+  submaps[1]->nodes = {node, node};
+  const Trajectory trajectory = trajectoryOf(submaps, {gaussian({0, 0, 0}), gaussian({5, 1, kQuarterTurn})});
+  ASSERT_EQ(trajectory.size(), 3u);
+  EXPECT_NEAR(trajectory[0].pose.x, 1, 1e-12);
+  EXPECT_NEAR(trajectory[0].pose.phi, 0.2, 1e-12);
+  EXPECT_NEAR(trajectory[1].pose.x, 3, 1e-12);
+  EXPECT_NEAR(trajectory[1].pose.y, 1, 1e-12);
+  EXPECT_EQ(trajectory[2].stamp, mrpt::Clock::fromDouble(101));
+  EXPECT_THROW(trajectoryOf(submaps, {gaussian({0, 0, 0})}), std::invalid_argument);
+}
+
+TEST(FuseEvidence, OneSubmapIsItsOwnMap) {
+  auto submap = emptySubmap();
+  set(*submap, 0.25, 0.35, 3.5f, 4);
+  set(*submap, -0.45, 0.05, -2, 7);
+  const EvidenceGrid map = fuseEvidence({submap}, {gaussian({0, 0, 0})}, 0);
+  EXPECT_NEAR(map.resolution(), 0.1, 1e-12);
+  EXPECT_EQ(map.observedCells(), 2u);
+  EXPECT_NEAR(logOddsAt(map, 0.25, 0.35), 3.5, 1e-5);
+  EXPECT_NEAR(hitsAt(map, 0.25, 0.35), 4, 1e-5);
+  EXPECT_NEAR(logOddsAt(map, -0.45, 0.05), -2, 1e-5);
+}
+
+TEST(FuseEvidence, WeighsSubmapsAsInEquation15) {
+  auto a = emptySubmap(), b = emptySubmap();
+  set(*a, 0.25, 0.35, 6, 2);
+  set(*b, 0.35, -0.25, 5, 1);  // turned by a quarter: lands on (0.25, 0.35)
+  const EvidenceGrid map = fuseEvidence({a, b}, {gaussian({0, 0, 0}), gaussian({0, 0, kQuarterTurn})}, 0);
+  // omega = 2/3 and 1/3: (2/3 · 6 + 1/3 · 5) / (4/9 + 1/9)
+  EXPECT_NEAR(logOddsAt(map, 0.25, 0.35), (17.0 / 3) / (5.0 / 9), 1e-5);
+  EXPECT_NEAR(hitsAt(map, 0.25, 0.35), 3, 1e-5);
+  EXPECT_EQ(map.observedCells(), 1u);
+}
+
+TEST(FuseEvidence, ConsistentEvidenceAddsUp) {
+  auto a = emptySubmap(), b = emptySubmap();
+  set(*a, 0.25, 0.35, 6, 2);
+  set(*b, 0.25, 0.35, 15, 5);
+  const EvidenceGrid map = fuseEvidence({a, b}, {gaussian({0, 0, 0}), gaussian({0, 0, 0})}, 0);
+  EXPECT_NEAR(logOddsAt(map, 0.25, 0.35), 21, 1e-4);
+}
+
+TEST(FuseEvidence, InterpolatesBetweenCells) {
+  auto submap = emptySubmap();
+  set(*submap, 0.05, 0.05, 4, 4);
+  const EvidenceGrid map = fuseEvidence({submap}, {gaussian({0.025, 0.05, 0})}, 0);
+  EXPECT_EQ(map.observedCells(), 4u);
+  EXPECT_NEAR(hitsAt(map, 0.05, 0.05), 4 * 0.75 * 0.5, 1e-4);
+  EXPECT_NEAR(hitsAt(map, 0.15, 0.05), 4 * 0.25 * 0.5, 1e-4);
+  EXPECT_NEAR(hitsAt(map, 0.15, 0.15), 4 * 0.25 * 0.5, 1e-4);
+  EXPECT_NEAR(logOddsAt(map, 0.05, 0.15), 4 * 0.75 * 0.5, 1e-4);
+}
+
+TEST(FuseEvidence, ReachesTheBorderOfTheGridAndFarFrames) {
+  auto submap = emptySubmap();
+  set(*submap, -0.95, -0.95, 1, 1);
+  set(*submap, 0.95, 0.95, 2, 1);
+  const EvidenceGrid map = fuseEvidence({submap}, {gaussian({-300, 200, 0})}, 0.1);
+  EXPECT_NEAR(logOddsAt(map, -300.95, 199.05), 1, 1e-4);
+  EXPECT_NEAR(logOddsAt(map, -299.05, 200.95), 2, 1e-4);
+  EXPECT_LE(map.cells(), 21u * 21u);
+}
+
+TEST(FuseEvidence, TakesTheAskedOrTheFinestResolution) {
+  auto coarse = GridSubmap::Create();
+  coarse->evidence = EvidenceGrid(-1, 1, -1, 1, 0.2);
+  set(*coarse, 0.1, 0.1, 1, 1);
+  auto fine = emptySubmap();
+  set(*fine, 0.05, 0.05, 1, 1);
+  const std::vector<CPosePDFGaussian> frames{gaussian({0, 0, 0}), gaussian({0, 0, 0})};
+  EXPECT_NEAR(fuseEvidence({coarse, fine}, frames, 0).resolution(), 0.1, 1e-12);
+  EXPECT_NEAR(fuseEvidence({coarse, fine}, frames, 0.05).resolution(), 0.05, 1e-12);
+}
+
+TEST(FuseEvidence, NothingObservedGivesNoObservedCell) {
+  EXPECT_EQ(fuseEvidence({emptySubmap()}, {gaussian({0, 0, 0})}, 0.1).observedCells(), 0u);
+  EXPECT_EQ(fuseEvidence({}, {}, 0.1).observedCells(), 0u);
+  EXPECT_THROW(fuseEvidence({emptySubmap()}, {}, 0.1), std::invalid_argument);
+}
+
+TEST(FuseEvidence, SameBitsForAnyNumberOfThreads) {
+  GridSubmaps submaps{emptySubmap(), emptySubmap(), emptySubmap()};
+  std::vector<CPosePDFGaussian> frames;
+  for (std::size_t k = 0; k < submaps.size(); ++k) {
+    EvidenceGrid& grid = submaps[k]->evidence;
+    for (std::size_t c = 0; c < grid.cells(); ++c) {
+      const auto cell = static_cast<std::ptrdiff_t>(c);
+      grid.log_odds.begin()[cell] = static_cast<float>(std::sin(static_cast<double>(c * (k + 1))));
+      grid.hits.begin()[cell] = 1.5f + static_cast<float>(std::cos(static_cast<double>(c)));
+    }
+    frames.push_back(gaussian({0.3 * static_cast<double>(k), 0.1, 0.4 * static_cast<double>(k)}));
+  }
+  const auto with = [&](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return fuseEvidence(submaps, frames, 0.07);
+  };
+  const EvidenceGrid one = with(1), two = with(2);
+  EXPECT_GT(one.observedCells(), 400u);
+  EXPECT_EQ(one.log_odds.data(), two.log_odds.data());
+  EXPECT_EQ(one.hits.data(), two.hits.data());
+}
+
+TEST(JoinStatus, EveryStatusHasItsOwnName) {
+  std::set<std::string> names;
+  for (const JoinStatus status : {JoinStatus::kChained, JoinStatus::kConverged, JoinStatus::kIterationLimit,
+                                  JoinStatus::kNothingToJoin, JoinStatus::kFailed})
+    names.insert(toString(status));
+  EXPECT_EQ(names.size(), 5u);
+}
+
+}  // namespace
+}  // namespace submap_slam

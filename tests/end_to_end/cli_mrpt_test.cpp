@@ -1,0 +1,47 @@
+/** MRPT's own programs understand the results. */
+#include "cli_fixture.h"
+
+namespace submap_slam::testing {
+namespace {
+
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+class MrptProgramsTest : public CliTest {
+ protected:
+  bool available(const std::string& other) const { return runOther(other, {"--help"}).exit_code != 127; }
+};
+
+TEST_F(MrptProgramsTest, RawlogEditListsTheSubmaps) {
+  if (!available("rawlog-edit")) GTEST_SKIP() << "rawlog-edit is not installed (package mrpt-apps)";
+  succeed(quickly({"build", log("room.rawlog"), "-o", path("s.rawlog")}));
+  const std::string last_row = succeed({"info", path("s.rawlog")}).out;
+  const auto submaps = lines(last_row) - 2;  // without heading and totals
+
+  const Outcome info = runOther("rawlog-edit", {"-i", path("s.rawlog"), "-p",
+                                                SUBMAP_SLAM_BINARY_DIR "/lib/libsubmap-types.so", "--info"});
+  EXPECT_EQ(info.exit_code, 0) << info.err;
+  EXPECT_THAT(info.out, HasSubstr("Overall number of objects         : " + std::to_string(submaps) + "\n"));
+}
+
+TEST_F(MrptProgramsTest, RosMapIsLoaded) {
+  if (!available("ros-map-yaml2mrpt"))
+    GTEST_SKIP() << "ros-map-yaml2mrpt is not installed (package mrpt-apps)";
+  succeed(quickly({"map", log("room.rawlog"), "-o", path("out")}));
+  const Outcome outcome =
+      runOther("ros-map-yaml2mrpt", {"-i", path("out/map.yaml"), "-d", path("output"), "-w"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(fs::exists(path("output/map.gridmap")) || fs::exists(path("output/map.gridmap.gz")));
+}
+
+TEST_F(MrptProgramsTest, LogWithoutOdometryIsMappedWithAWarning) {
+  if (!available("rawlog-edit")) GTEST_SKIP() << "rawlog-edit is not installed (package mrpt-apps)";
+  runOther("rawlog-edit",
+           {"-i", log("room.rawlog"), "-o", path("scans.rawlog"), "--remove-label", "ODOMETRY"});
+  const Outcome outcome = succeed(quickly({"map", path("scans.rawlog"), "-o", path("out")}));
+  EXPECT_THAT(outcome.err, HasSubstr("submap-slam: warning: There is no odometry"));
+  EXPECT_GT(lines(contentOf(path("out/trajectory.tum"))), 90u);
+}
+
+}  // namespace
+}  // namespace submap_slam::testing

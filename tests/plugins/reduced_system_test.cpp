@@ -1,0 +1,269 @@
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "grid_gauss_newton/full_gauss_newton.h"
+#include "grid_gauss_newton/reduced_system.h"
+#include "synthetic_submaps.h"
+
+namespace submap_slam::grid_joining {
+namespace {
+
+using mrpt::math::TPose2D;
+
+constexpr double kAngle = 0.41;
+const auto kEveryJacobian =
+    ::testing::Values(JacobianKind::kPaper, JacobianKind::kVariableProjection, JacobianKind::kSurface);
+
+struct Problem {
+  EvidenceLevels level;
+  Frames frames;
+};
+
+/** Four or five submaps that overlap in part; the first and the last hardly do. */
+Problem makeProblem(uint32_t seed, bool rough) {
+  const std::size_t count = 4 + seed % 2;
+  GridSubmaps submaps;
+  Frames frames;
+  for (std::size_t i = 0; i < count; ++i) {
+    const uint32_t s = 10 * seed + static_cast<uint32_t>(i);
+    submaps.push_back(rough ? testing::roughSubmap(s, 3.1, 2.3, 0.1)
+                            : testing::randomSubmap(s, 3.1, 2.3, 0.1));
+    const double k = static_cast<double>(i);
+    frames.emplace_back(0.8 * k, 0.3 * std::sin(2.0 * k), 0.5 * k - 0.2);
+  }
+  return {buildPyramid(submaps, 0, 1).front(), frames};
+}
+
+double relativeDifference(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return (a - b).norm() / b.norm();
+}
+
+/** Look-up written independently: four weighted cells, unknown outside. */
+std::pair<double, double> lookUp(const EvidenceLevel& level, double u, double v) {
+  double l = 0, n = 0;
+  for (int r = 0; r < level.rows(); ++r)
+    for (int c = 0; c < level.columns(); ++c) {
+      const double weight = std::max(0.0, 1 - std::abs(u - c)) * std::max(0.0, 1 - std::abs(v - r));
+      l += weight * static_cast<double>(level.cell(c, r).log_odds);
+      n += weight * static_cast<double>(level.cell(c, r).hits);
+    }
+  return {l, n};
+}
+
+TEST(ReducedSystem, CostIsThatOfEquation4AtTheBestMap) {
+  const Problem p = makeProblem(2, true);
+  double cost = 0, weight = 0;
+  std::size_t observations = 0;
+  for (int a = -30; a < 60; ++a)
+    for (int b = -40; b < 40; ++b) {
+      const double x = 0.1 * (std::cos(kAngle) * a - std::sin(kAngle) * b);
+      const double y = 0.1 * (std::sin(kAngle) * a + std::cos(kAngle) * b);
+      std::vector<std::pair<double, double>> seen;
+      for (std::size_t i = 0; i < p.frames.size(); ++i) {
+        const auto local = p.frames[i].inverseComposePoint({x, y});
+        const auto [l, n] = lookUp(p.level[i], p.level[i].columnOf(local.x), p.level[i].rowOf(local.y));
+        if (n > 0) seen.emplace_back(l, n);
+      }
+      if (seen.size() < 2) continue;
+      observations += seen.size();
+      double n_m = 0, numerator = 0, denominator = 0;
+      for (const auto& [l, n] : seen) n_m += n;
+      for (const auto& [l, n] : seen) numerator += n / n_m * l, denominator += n / n_m * n / n_m;
+      for (const auto& [l, n] : seen) cost += std::pow(n / n_m * numerator / denominator - l, 2);
+      for (std::size_t i = 0; i < seen.size(); ++i)
+        for (std::size_t k = 0; k < i; ++k)
+          weight += std::pow(seen[i].second * seen[k].second, 2) / (denominator * n_m * n_m);
+    }
+  const ReducedSystem reduced = reduce(p.level, p.frames, JacobianKind::kPaper, kAngle);
+  EXPECT_GT(observations, 2000u);
+  EXPECT_EQ(reduced.observations, observations);
+  EXPECT_NEAR(reduced.cost, cost, 1e-10 * cost);
+  EXPECT_NEAR(reduced.overlap_weight, weight, 1e-10 * weight);
+}
+
+class EveryJacobian : public ::testing::TestWithParam<JacobianKind> {};
+INSTANTIATE_TEST_SUITE_P(All, EveryJacobian, kEveryJacobian);
+
+TEST_P(EveryJacobian, StepIsThatOfTheFullSystemWhateverTheMap) {
+  for (const uint32_t seed : {1u, 2u, 3u}) {
+    const Problem p = makeProblem(seed, true);
+    const ReducedSystem reduced = reduce(p.level, p.frames, GetParam(), kAngle);
+    const auto held = anchorsOf(reduced.system);
+    const PoseSystem nothing(p.frames.size());
+    const auto step = solve(reduced.system, held, Eigen::VectorXd::Zero(3 * held.size()));
+    ASSERT_TRUE(step);
+    ASSERT_TRUE(held[0]);
+    const ExplicitProblem written = writeOut(p.level, p.frames, GetParam(), kAngle);
+    const auto explicit_step = poseOnlyStep(written, nothing, held);
+    ASSERT_TRUE(explicit_step);
+    EXPECT_LT(relativeDifference(*step, *explicit_step), 1e-9);
+    for (const double scale : {0.0, 1.0, 100.0}) {
+      const Eigen::VectorXd map =
+          scale * Eigen::VectorXd::LinSpaced(written.map_jacobian.cols(), -1, 1).array().cos();
+      const auto full = fullStep(written, map, nothing, held);
+      ASSERT_TRUE(full);
+      EXPECT_LT(relativeDifference(*step, full->frames), 1e-9) << "seed " << seed << " scale " << scale;
+    }
+  }
+}
+
+TEST_P(EveryJacobian, PoseTermsEnterAllSolversAlike) {
+  const Problem p = makeProblem(4, false);
+  ReducedSystem reduced = reduce(p.level, p.frames, GetParam(), kAngle);
+  const auto held = anchorsOf(reduced.system);
+  PoseSystem terms(p.frames.size());
+  terms.addBlock(1, 2, Eigen::Vector3d(-3, 2, 1).asDiagonal());
+  for (std::size_t i = 0; i < p.frames.size(); ++i)
+    terms.addBlock(i, i, Eigen::Vector3d(50, 60, 70).asDiagonal());
+  terms.gradient[1] = {5, -4, 3};
+  const ExplicitProblem written = writeOut(p.level, p.frames, GetParam(), kAngle);
+  const auto full = fullStep(written, Eigen::VectorXd::Zero(written.map_jacobian.cols()), terms, held);
+  const auto explicit_step = poseOnlyStep(written, terms, held);
+  reduced.system.add(terms, 1);
+  const auto step = solve(reduced.system, held, Eigen::VectorXd::Zero(3 * held.size()));
+  ASSERT_TRUE(full && explicit_step && step);
+  EXPECT_LT(relativeDifference(*step, full->frames), 1e-9);
+  EXPECT_LT(relativeDifference(*step, *explicit_step), 1e-9);
+}
+
+TEST_P(EveryJacobian, MatrixIsPositiveSemidefinite) {
+  const Problem p = makeProblem(5, true);
+  const Eigen::MatrixXd matrix = reduce(p.level, p.frames, GetParam(), kAngle).system.denseMatrix();
+  EXPECT_EQ((matrix - matrix.transpose()).cwiseAbs().maxCoeff(), 0) << "off-diagonal blocks are stored once";
+  for (Eigen::Index i = 0; i < matrix.rows(); i += 3) {
+    const Eigen::Matrix3d block = matrix.block<3, 3>(i, i);
+    EXPECT_LT((block - block.transpose()).norm(), 1e-12 * block.norm());
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix);
+  EXPECT_GT(eigen.eigenvalues().minCoeff(), -1e-12 * eigen.eigenvalues().maxCoeff());
+}
+
+TEST_P(EveryJacobian, SameBitsForAnyNumberOfThreads) {
+  const Problem p = makeProblem(3, true);
+  const auto with = [&](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return reduce(p.level, p.frames, GetParam(), kAngle);
+  };
+  const ReducedSystem one = with(1), two = with(2), again = with(2);
+  for (const ReducedSystem& other : {two, again}) {
+    EXPECT_EQ(one.cost, other.cost);
+    EXPECT_EQ(one.overlap_weight, other.overlap_weight);
+    EXPECT_EQ(one.system.denseMatrix(), other.system.denseMatrix());
+    EXPECT_EQ(one.system.denseGradient(), other.system.denseGradient());
+  }
+}
+
+TEST(ReducedSystem, VariableProjectionIsTheGradientOfTheCost) {
+  const Problem p = makeProblem(6, false);
+  const Eigen::VectorXd gradient =
+      2 * reduce(p.level, p.frames, JacobianKind::kVariableProjection, kAngle).system.denseGradient();
+  const double h = 1e-7;
+  Eigen::VectorXd differences(gradient.size());
+  for (Eigen::Index k = 0; k < gradient.size(); ++k) {
+    const auto costAt = [&](double offset) {
+      Eigen::VectorXd step = Eigen::VectorXd::Zero(gradient.size());
+      step[k] = offset;
+      return reduce(p.level, moved(p.frames, step), JacobianKind::kPaper, kAngle).cost;
+    };
+    differences[k] = (costAt(h) - costAt(-h)) / (2 * h);
+  }
+  EXPECT_LT(relativeDifference(gradient, differences), 1e-6);
+  const Eigen::VectorXd paper =
+      2 * reduce(p.level, p.frames, JacobianKind::kPaper, kAngle).system.denseGradient();
+  EXPECT_GT(relativeDifference(paper, differences), 1e-3) << "the published form leaves the hit counts out";
+}
+
+TEST(ReducedSystem, SurfaceJacobianVanishesInUniformSpace) {
+  GridSubmaps submaps;
+  for (int i = 0; i < 2; ++i) {
+    submaps.push_back(testing::randomSubmap(static_cast<uint32_t>(i), 3, 3, 0.1));
+    EvidenceGrid& grid = submaps.back()->evidence;
+    for (std::size_t k = 0; k < grid.cells(); ++k)
+      grid.log_odds.begin()[static_cast<std::ptrdiff_t>(k)] = -2 * grid.hits.data()[k];
+  }
+  const Frames frames{{0, 0, 0}, {0.4, -0.3, 0.6}};
+  const ReducedSystem reduced =
+      reduce(buildPyramid(submaps, 0, 1).front(), frames, JacobianKind::kSurface, kAngle);
+  EXPECT_GT(reduced.observations, 500u);
+  EXPECT_LT(reduced.cost, 1e-20 * reduced.energy);
+  EXPECT_LT(reduced.system.denseMatrix().cwiseAbs().maxCoeff(), 1e-20 * reduced.energy);
+}
+
+/** All frames moved rigidly, so that the lattice falls on the same points of every submap again. */
+TEST(ReducedSystem, RigidMotionOfEverythingChangesNothing) {
+  const Problem p = makeProblem(7, true);
+  const ReducedSystem here = reduce(p.level, p.frames, JacobianKind::kPaper, kAngle);
+  const double a = 37, b = -12, turn = 0.83;
+  const TPose2D shift(0.1 * (std::cos(kAngle) * a - std::sin(kAngle) * b),
+                      0.1 * (std::sin(kAngle) * a + std::cos(kAngle) * b), 0);
+  Frames shifted, turned;
+  for (const TPose2D& frame : p.frames) {
+    shifted.push_back(shift + frame);
+    turned.push_back(TPose2D(0, 0, turn) + frame);
+  }
+  const ReducedSystem there = reduce(p.level, shifted, JacobianKind::kPaper, kAngle);
+  const ReducedSystem round = reduce(p.level, turned, JacobianKind::kPaper, kAngle + turn);
+  EXPECT_NEAR(there.cost, here.cost, 1e-9 * here.cost);
+  EXPECT_NEAR(round.cost, here.cost, 1e-9 * here.cost);
+}
+
+TEST(ReducedSystem, CellsOfOneSubmapCountForNothing) {
+  const EvidenceLevels level =
+      buildPyramid({testing::roughSubmap(1, 3, 2, 0.1), testing::roughSubmap(2, 3, 2, 0.1)}, 0, 1).front();
+  const ReducedSystem alone = reduce({level[0]}, {{0.3, 0.2, 0.1}}, JacobianKind::kPaper, kAngle);
+  const ReducedSystem apart = reduce(level, {{0, 0, 0}, {3.5, 2.5, 0.3}}, JacobianKind::kPaper, kAngle);
+  for (const ReducedSystem& none : {alone, apart}) {
+    EXPECT_EQ(none.observations, 0u);
+    EXPECT_EQ(none.cost, 0);
+    EXPECT_TRUE(none.system.blocks.empty());
+  }
+}
+
+TEST(ReducedSystem, SubmapWithoutEvidenceIsHarmless) {
+  GridSubmaps submaps{testing::roughSubmap(1, 3, 2, 0.1), GridSubmap::Create(),
+                      testing::roughSubmap(2, 3, 2, 0.1)};
+  submaps[1]->evidence = EvidenceGrid(-1, 1, -1, 1, 0.1);
+  const EvidenceLevels all = buildPyramid(submaps, 0, 1).front();
+  const EvidenceLevels two{all[0], all[2]};
+  const TPose2D first(0, 0, 0), last(0.5, 0.4, 0.3);
+  const ReducedSystem with = reduce(all, {first, {0.1, 0, 0}, last}, JacobianKind::kPaper, kAngle);
+  const ReducedSystem without = reduce(two, {first, last}, JacobianKind::kPaper, kAngle);
+  EXPECT_GT(without.observations, 0u);
+  EXPECT_EQ(with.observations, without.observations);
+  EXPECT_EQ(with.cost, without.cost);
+  EXPECT_EQ(with.system.gradient[1], Eigen::Vector3d::Zero());
+}
+
+TEST(Anchors, OneForEachConnectedGroup) {
+  PoseSystem system(5);
+  for (std::size_t i = 0; i < 5; ++i) system.addBlock(i, i, Eigen::Matrix3d::Identity());
+  system.addBlock(0, 3, Eigen::Matrix3d::Identity());
+  system.addBlock(4, 1, Eigen::Matrix3d::Identity());
+  system.addBlock(1, 2, Eigen::Matrix3d::Zero());
+  EXPECT_EQ(anchorsOf(system), (std::vector<bool>{true, true, true, false, false}));
+  EXPECT_EQ(groupsOf(system), (std::vector<std::size_t>{0, 1, 2, 0, 1}));
+}
+
+TEST(PoseSystem, MarginalCovarianceIsTheBlockOfTheInverse) {
+  const Problem p = makeProblem(8, true);
+  const PoseSystem system = reduce(p.level, p.frames, JacobianKind::kVariableProjection, kAngle).system;
+  const auto covariances =
+      marginalCovariances(system, anchorsOf(system), Eigen::VectorXd::Zero(3 * p.frames.size()));
+  ASSERT_TRUE(covariances);
+  const Eigen::Index free = 3 * static_cast<Eigen::Index>(p.frames.size()) - 3;
+  const Eigen::MatrixXd inverse = system.denseMatrix().bottomRightCorner(free, free).inverse();
+  EXPECT_EQ(covariances->front(), Eigen::Matrix3d::Zero());
+  for (std::size_t i = 1; i < p.frames.size(); ++i) {
+    const Eigen::Index k = 3 * static_cast<Eigen::Index>(i) - 3;
+    const Eigen::Matrix3d expected = inverse.block<3, 3>(k, k);
+    EXPECT_LT(((*covariances)[i] - expected).norm(), 1e-9 * expected.norm());
+  }
+}
+
+}  // namespace
+}  // namespace submap_slam::grid_joining
