@@ -50,13 +50,11 @@ int reportError(std::string text, int exit_code) {
   return exit_code;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+/** Every error ends in one line on stderr and an exit code. */
+int runReportingErrors(int argc, char** argv) {
   CLI::App app("Makes large, accurate 2D maps from MRPT rawlogs by building and joining submaps.",
                "submap-slam");
   try {
-    catchStopSignals();
     return run(app, argc, argv);
   } catch (const CLI::Success& e) {  // --help, --version
     return app.exit(e);
@@ -72,5 +70,16 @@ int main(int argc, char** argv) {
     return reportError(e.what(), kInterrupted);
   } catch (const std::exception& e) {
     return reportError(e.what(), kFailure);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    catchStopSignals();
+    return runReportingErrors(argc, argv);
+  } catch (...) {  // stderr itself is gone, or memory is
+    return kFailure;
   }
 }

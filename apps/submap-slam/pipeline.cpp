@@ -152,11 +152,11 @@ bool buildSubmaps(StretchSource& source, const LocalMapper& mapper, SubmapLogWri
     flow.stop();
     return nullptr;
   };
-  const auto build = [&](JobPtr job) {
+  const auto build = [&](const JobPtr& job) {
     job->submaps = mapper.map(job->stretch);
     return job;
   };
-  const auto write = [&](JobPtr job) {
+  const auto write = [&](const JobPtr& job) {
     auto id = static_cast<uint32_t>(writer.state().submaps_done);
     for (const auto& submap : job->submaps) submap->id = id++;
     writer.appendStretch(job->submaps);
@@ -164,6 +164,7 @@ bool buildSubmaps(StretchSource& source, const LocalMapper& mapper, SubmapLogWri
     reporter.progress("building submaps", job->fraction_read, frames_built, "scans");
   };
 
+  reporter.progress("building submaps", 0);
   const std::size_t threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   tbb::parallel_pipeline(2 * threads,
                          tbb::make_filter<void, JobPtr>(filter_mode::serial_in_order, read) &
@@ -181,7 +182,9 @@ JoinedMap joinSubmaps(const GridSubmaps& submaps, const JoinerChain& joiners, do
       reporter.progress("joining with " + joiner->name(), fraction);
       return !stopRequested();
     };
+    progress(0, "");
     joined = joiner->join(submaps, joined, progress);
+    progress(1, "");
     checkFrames(*joiner, joined, submaps.size());
     const std::string outcome =
         fmt::format("{}: {} ({}), objective {}, {} iterations", joiner->name(), toString(joined.status),

@@ -16,6 +16,7 @@
 namespace submap_slam {
 
 /** How a run ended and what it says of itself. */
+// NOLINTNEXTLINE(bugprone-exception-escape): takes asserts of the JSON library for throws
 struct RunSummary {
   Metrics metrics;           ///< what metrics.json holds
   bool damaged = false;      ///< the log is damaged; the part before the damage was used

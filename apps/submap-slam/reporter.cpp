@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace submap_slam {
@@ -12,7 +13,7 @@ namespace {
 constexpr auto kRewriteInterval = std::chrono::milliseconds(100);
 
 std::string minutesAndSeconds(double seconds) {
-  const auto whole = static_cast<long>(seconds + 0.5);
+  const long whole = std::lround(seconds);
   return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 

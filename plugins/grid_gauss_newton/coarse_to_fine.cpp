@@ -11,6 +11,10 @@ namespace {
 /** Less than this share above the start counts as equally good: frames that were optimal stay accepted. */
 constexpr double kEquallyGood = 1e-3;
 
+/** Coarse levels give up soon: their Jacobian is not the gradient of the cost, so a smaller step need not
+ * lower it, and the next level does better. */
+constexpr double kLargestCoarseDamping = 0.05;
+
 double cellSize(const EvidenceLevels& level) {
   const auto observed = std::find_if(level.begin(), level.end(), [](const auto& l) { return !l.empty(); });
   return observed == level.end() ? 1 : observed->resolution();
@@ -28,6 +32,31 @@ StepFunction stepFunction(SolverKind solver, const LevelProblem& problem) {
   };
 }
 
+CoarseToFineResult nothingToJoin(const Frames& start) {
+  CoarseToFineResult result;
+  result.reason = "no two submaps overlap";
+  result.frames = start;
+  result.covariances.resize(start.size());
+  return result;
+}
+
+CoarseToFineResult failed(const Frames& start, double objective, std::vector<JoinIteration> iterations) {
+  CoarseToFineResult result;
+  result.status = JoinStatus::kFailed;
+  result.reason = "no frames were found that fit better than those given";
+  result.frames = start;
+  result.objective = objective;
+  result.iterations = std::move(iterations);
+  result.covariances.resize(start.size());
+  return result;
+}
+
+/** Frames with what the finest level says about them. */
+struct Candidate {
+  Frames frames;
+  Evaluation finest;
+};
+
 /** The schedule and what it needs at every level. */
 class Schedule {
  public:
@@ -38,83 +67,86 @@ class Schedule {
   CoarseToFineResult run(const Frames& start);
 
  private:
-  LevelProblem problemAt(std::size_t k, const Frames& frames) const;
-  LevelResult optimiseLevel(std::size_t k, const LevelProblem& problem, const Frames& start);
-  bool descend(const Frames& start);
-  CoarseToFineResult conclude(const Frames& start, const LevelResult& finest);
+  LevelProblem problemAt(std::size_t k, JacobianKind jacobian) const;
+  void estimateVariance(LevelProblem& problem, Evaluation& at_start) const;
+  LevelResult optimiseLevel(std::size_t k, const LevelProblem& problem, const Frames& start,
+                            const Evaluation& at_start);
+  LevelResult optimiseCoarse(std::size_t k, const Frames& start);
+  bool descend(const LevelProblem& finest, Candidate& best);
+  CoarseToFineResult conclude(const LevelResult& finest);
 
   const std::vector<EvidenceLevels>& pyramid_;
   const ChainPrior& prior_;
   const CoarseToFineOptions& options_;
   const IterationCallback& callback_;
-
-  Frames best_;
   std::vector<JoinIteration> iterations_;
 };
 
-LevelProblem Schedule::problemAt(std::size_t k, const Frames& frames) const {
+LevelProblem Schedule::problemAt(std::size_t k, JacobianKind jacobian) const {
   LevelProblem problem{pyramid_[k], prior_};
-  problem.jacobian = k == 0 ? options_.finest_jacobian : options_.coarse_jacobian;
+  problem.jacobian = jacobian;
   problem.lattice_angle = options_.lattice_angle;
   problem.per_overlap = k > 0;
-  const ReducedSystem evidence = reduce(problem.level, frames, problem.jacobian, problem.lattice_angle);
-  problem.evidence_variance =
-      estimateEvidenceVariance(evidence, cellSize(problem.level), options_.correlation_length);
+  problem.single_precision = options_.solver == SolverKind::kPoseOnly;
   return problem;
 }
 
-LevelResult Schedule::optimiseLevel(std::size_t k, const LevelProblem& problem, const Frames& start) {
+void Schedule::estimateVariance(LevelProblem& problem, Evaluation& at_start) const {
+  problem.evidence_variance =
+      estimateEvidenceVariance(at_start.evidence, cellSize(problem.level), options_.correlation_length);
+  weigh(problem, at_start);
+}
+
+LevelResult Schedule::optimiseLevel(std::size_t k, const LevelProblem& problem, const Frames& start,
+                                    const Evaluation& at_start) {
   LevenbergMarquardtOptions iteration = options_.iteration;
   const double cells =
       static_cast<double>(std::size_t{1} << k);  // a coarse result is a start for the next level only
   iteration.max_step_m *= cells;
   iteration.max_step_rad *= cells;
+  iteration.cost_decrease *= cells;
+  if (k > 0) iteration.largest_damping = kLargestCoarseDamping;
   iteration.step = stepFunction(options_.solver, problem);
-  LevelResult result = optimise(problem, start, iteration, [&](JoinIteration i) {
+  return optimise(problem, start, at_start, iteration, [&](JoinIteration i) {
     i.level = static_cast<int>(k);
     iterations_.push_back(i);
     return !callback_ || callback_(i);
   });
-  return result;
+}
+
+/** First along the coarse Jacobian for its wide basin, then along that of the finest level: the fixed point
+ * of the first is biased. */
+LevelResult Schedule::optimiseCoarse(std::size_t k, const Frames& start) {
+  LevelProblem problem = problemAt(k, options_.coarse_jacobian);
+  Evaluation at_start = evaluate(problem, start);
+  estimateVariance(problem, at_start);
+  LevelResult level = optimiseLevel(k, problem, start, at_start);
+  if (level.stop == StopReason::kCancelled || options_.coarse_jacobian == options_.finest_jacobian)
+    return level;
+  problem.jacobian = options_.finest_jacobian;
+  return optimiseLevel(k, problem, level.frames, evaluate(problem, level.frames));
 }
 
 /** Goes down to the level above the finest; false if it was stopped on request. */
-bool Schedule::descend(const Frames& start) {
-  best_ = start;
-  const LevelProblem finest = problemAt(0, start);
-  const Evaluation at_start = evaluate(finest, start);
-  const double overlap = at_start.evidence.overlap_weight;
-  double lowest = objectiveAtOverlap(at_start, finest.evidence_variance, overlap);
+bool Schedule::descend(const LevelProblem& finest, Candidate& best) {
+  const double overlap = best.finest.overlap;
+  double lowest = best.finest.objective;
   for (std::size_t k = pyramid_.size() - 1; k > 0; --k) {
-    const LevelResult level = optimiseLevel(k, problemAt(k, best_), best_);
-    const double objective =
-        objectiveAtOverlap(evaluate(finest, level.frames), finest.evidence_variance, overlap);
+    const LevelResult level = optimiseCoarse(k, best.frames);
+    Candidate candidate{level.frames, evaluate(finest, level.frames)};
+    const double objective = objectiveAtOverlap(candidate.finest, finest.evidence_variance, overlap);
     if (objective < lowest) {
       lowest = objective;
-      best_ = level.frames;
+      best = std::move(candidate);
     }
     if (level.stop == StopReason::kCancelled) return false;
   }
   return true;
 }
 
-CoarseToFineResult Schedule::conclude(const Frames& start, const LevelResult& finest) {
+CoarseToFineResult Schedule::conclude(const LevelResult& finest) {
   CoarseToFineResult result;
   result.iterations = std::move(iterations_);
-  result.covariances.resize(start.size());
-  const LevelProblem problem = problemAt(0, start);
-  const Evaluation before = evaluate(problem, start);
-  const double overlap = before.evidence.overlap_weight;
-  const double after =
-      objectiveAtOverlap(evaluate(problem, finest.frames), problem.evidence_variance, overlap);
-  if (after > before.objective * (1 + kEquallyGood)) {
-    result.status = JoinStatus::kFailed;
-    result.reason = "no frames were found that fit better than those given";
-    result.frames = start;
-    result.objective = before.objective;
-    return result;
-  }
-
   const bool unfinished = finest.stop == StopReason::kIterationLimit || finest.stop == StopReason::kCancelled;
   result.status = unfinished ? JoinStatus::kIterationLimit : JoinStatus::kConverged;
   result.reason = toString(finest.stop);
@@ -123,17 +155,31 @@ CoarseToFineResult Schedule::conclude(const Frames& start, const LevelResult& fi
   const PoseSystem& system = finest.evaluation.total;
   const auto groups = groupsOf(system);
   const auto covariances = marginalCovariances(system, anchorsOf(system), dampingDiagonal(system, 0));
+  result.covariances.resize(finest.frames.size());
   for (std::size_t i = 0; covariances && i < groups.size(); ++i)
     if (groups[i] == 0) result.covariances[i] = (*covariances)[i];
   return result;
 }
 
 CoarseToFineResult Schedule::run(const Frames& start) {
-  const bool finished = descend(start);
-  const LevelProblem problem = problemAt(0, best_);
-  LevelResult finest = finished ? optimiseLevel(0, problem, best_)
-                                : LevelResult{best_, evaluate(problem, best_), {}, StopReason::kCancelled};
-  return conclude(start, finest);
+  LevelProblem comparison = problemAt(0, options_.finest_jacobian);
+  comparison.per_overlap = true;
+  Candidate best{start, evaluate(comparison, start)};
+  if (best.finest.overlap <= 0) return nothingToJoin(start);
+  estimateVariance(comparison, best.finest);
+  const double before = best.finest.objective, overlap = best.finest.overlap;
+  const bool finished = descend(comparison, best);
+
+  LevelProblem problem = problemAt(0, options_.finest_jacobian);
+  estimateVariance(problem, best.finest);
+  LevelResult finest{best.frames, best.finest, {}, StopReason::kCancelled};
+  if (finished) finest = optimiseLevel(0, problem, best.frames, best.finest);
+
+  finest.evaluation.overlap =
+      overlapWeight(PlacedLevels(pyramid_.front(), finest.frames, options_.lattice_angle));
+  const double after = objectiveAtOverlap(finest.evaluation, comparison.evidence_variance, overlap);
+  if (after > before * (1 + kEquallyGood)) return failed(start, before, std::move(iterations_));
+  return conclude(finest);
 }
 
 }  // namespace
@@ -141,15 +187,6 @@ CoarseToFineResult Schedule::run(const Frames& start) {
 CoarseToFineResult joinCoarseToFine(const std::vector<EvidenceLevels>& pyramid, const Frames& start,
                                     const ChainPrior& prior, const CoarseToFineOptions& options,
                                     const IterationCallback& callback) {
-  const ReducedSystem overlap =
-      reduce(pyramid.front(), start, options.finest_jacobian, options.lattice_angle);
-  if (overlap.observations == 0) {
-    CoarseToFineResult nothing;
-    nothing.reason = "no two submaps overlap";
-    nothing.frames = start;
-    nothing.covariances.resize(start.size());
-    return nothing;
-  }
   return Schedule(pyramid, prior, options, callback).run(start);
 }
 

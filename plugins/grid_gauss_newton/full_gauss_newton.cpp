@@ -2,6 +2,7 @@
 
 #include <Eigen/CholmodSupport>
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace submap_slam::grid_joining {
@@ -17,31 +18,41 @@ struct Row {
   double px, py;
 };
 
+/** Half-open bounds on the lattice. */
+struct Bounds {
+  int a_min = 0, a_max = 0, b_min = 0, b_max = 0;
+};
+
+Bounds boundsOf(const std::vector<PlacedLevel>& placed) {
+  Bounds all;
+  for (const PlacedLevel& submap : placed)
+    for (const auto& block : submap.level().blocks())
+      for (const int u : {block.column, block.column + EvidenceLevel::kBlock})
+        for (const int v : {block.row, block.row + EvidenceLevel::kBlock}) {
+          const double a = submap.aOf(u, v), b = submap.bOf(u, v);
+          all = {std::min(all.a_min, static_cast<int>(std::floor(a))),
+                 std::max(all.a_max, static_cast<int>(std::ceil(a)) + 1),
+                 std::min(all.b_min, static_cast<int>(std::floor(b))),
+                 std::max(all.b_max, static_cast<int>(std::ceil(b)) + 1)};
+        }
+  return all;
+}
+
 /** One observation for each submap and lattice point where it has evidence. */
 std::vector<Row> observationsOf(const std::vector<PlacedLevel>& placed, std::size_t& cells) {
-  PlacedLevel::Bounds all{0, 0, 0, 0};
-  for (const PlacedLevel& submap : placed) {
-    const auto box = submap.bounds();
-    all = {std::min(all.a_min, box.a_min), std::max(all.a_max, box.a_max), std::min(all.b_min, box.b_min),
-           std::max(all.b_max, box.b_max)};
-  }
-  const auto width = static_cast<std::size_t>(all.a_max - all.a_min);
-  std::vector<std::size_t> number(width * static_cast<std::size_t>(all.b_max - all.b_min), 0);
+  const Bounds all = boundsOf(placed);
   std::vector<Row> rows;
   cells = 0;
   for (int b = all.b_min; b < all.b_max; ++b)
-    for (std::size_t i = 0; i < placed.size(); ++i) {
-      const EvidenceLevel& level = placed[i].level();
-      const auto [begin, end] = placed[i].clip(all.a_min, all.a_max, b);
-      for (int a = begin; a < end; ++a) {
+    for (int a = all.a_min; a < all.a_max; ++a) {
+      const std::size_t first = rows.size();
+      for (std::size_t i = 0; i < placed.size(); ++i) {
+        const EvidenceLevel& level = placed[i].level();
         const double u = placed[i].columnOf(a, b), v = placed[i].rowOf(a, b);
         const EvidenceSample sample = level.sample(u, v);
-        if (sample.hits <= 0) continue;
-        std::size_t& cell =
-            number[static_cast<std::size_t>(b - all.b_min) * width + static_cast<std::size_t>(a - all.a_min)];
-        if (cell == 0) cell = ++cells;
-        rows.push_back({i, cell - 1, sample, level.xOf(u), level.yOf(v)});
+        if (sample.hits > 0) rows.push_back({i, cells, sample, level.xOf(u), level.yOf(v)});
       }
+      if (rows.size() > first) ++cells;
     }
   return rows;
 }
@@ -120,7 +131,7 @@ std::optional<Eigen::VectorXd> choleskySolve(const SparseMatrix& matrix, const E
 ExplicitProblem writeOut(const EvidenceLevels& level, const Frames& frames, JacobianKind jacobian,
                          double lattice_angle) {
   std::size_t cells = 0;
-  const std::vector<Row> rows = observationsOf(placeAll(level, frames, lattice_angle), cells);
+  const std::vector<Row> rows = observationsOf(PlacedLevels(level, frames, lattice_angle).submaps, cells);
   const auto n = sumPerCell(rows, cells, [](const EvidenceSample& s) { return s.hits; });
   const auto ww = sumPerCell(rows, cells, [](const EvidenceSample& s) { return s.hits * s.hits; });
   const auto wl = sumPerCell(rows, cells, [](const EvidenceSample& s) { return s.hits * s.log_odds; });

@@ -24,9 +24,9 @@ SolverKind solverNamed(const std::string& name) {
 }
 
 void requireEqualResolutions(const GridSubmaps& submaps) {
-  const double first = submaps.front()->evidence.resolution();
+  const double first = submaps.front()->resolution();
   for (const auto& submap : submaps) {
-    const double other = submap->evidence.resolution();
+    const double other = submap->resolution();
     if (std::abs(other - first) > 1e-6 * first)
       throw InputError("submap " + std::to_string(submap->id) + " has cells of " + std::to_string(other) +
                        " m; expected " + std::to_string(first) + " m as in submap " +
@@ -42,8 +42,8 @@ Frames meansOf(const std::vector<mrpt::poses::CPosePDFGaussian>& frames) {
 
 /** Share of the work done after an iteration: levels count alike, and so do iterations up to the cap. */
 double shareDone(int levels, int level, int iteration_of_level, int max_iterations) {
-  const double share = static_cast<double>(iteration_of_level) / max_iterations;
-  return std::min(1.0, (levels - 1 - level + share) / levels);
+  const double share = std::min(1.0, static_cast<double>(iteration_of_level) / max_iterations);
+  return (levels - 1 - level + share) / levels;
 }
 
 }  // namespace
@@ -66,7 +66,8 @@ void GridGaussNewton::describe(ParameterTable& table) {
             "or surfaces "
             "only.",
             jacobians);
-  table.add("coarse_jacobian", coarse_jacobian_, "Derivative at all other levels.", jacobians);
+  table.add("coarse_jacobian", coarse_jacobian_,
+            "Derivative at all other levels; each is finished with that of the finest level.", jacobians);
   table.add("max_iterations", max_iterations_, "", {1, 10000}, "Limit of iterations at each level.");
   table.add("step_tolerance", step_tolerance_, "m", {0, 1},
             "Converged when no frame moves farther and none turns more than turn_tolerance; doubled at each "
@@ -74,11 +75,10 @@ void GridGaussNewton::describe(ParameterTable& table) {
             "level.");
   table.add("turn_tolerance", turn_tolerance_, "rad", {0, 1}, "See step_tolerance.");
   table.add("cost_tolerance", cost_tolerance_, "", {0, 1},
-            "Converged when the objective falls by a smaller share.");
+            "Converged when the objective falls by a smaller share; doubled at each coarser level.");
   table.add("prior_weight", prior_weight_, "", {0, 1e9},
             "Factor on the information of the submaps' end poses, which hold what the evidence does not show "
-            "(the length "
-            "of corridors); 0 ignores them.");
+            "(the length of corridors); 0 ignores them.");
   table.add(
       "correlation_length", correlation_length_, "m", {0, 100},
       "Distance over which cells err together; the evidence counts as one witness for each such square.");
@@ -123,7 +123,9 @@ JoinedMap GridGaussNewton::join(const GridSubmaps& submaps, const JoinedMap& ini
     level = i.level;
     return !progress || progress(shareDone(levels_, level, in_level, max_iterations_), "joining grids");
   };
-  const auto pyramid = buildPyramid(submaps, finest_level_, levels_);
+  const bool as_published = jacobian_ == "paper" || coarse_jacobian_ == "paper";
+  const double background = as_published ? 0 : backgroundOf(submaps);
+  const auto pyramid = buildPyramid(submaps, {finest_level_, levels_, background});
   const CoarseToFineResult result = joinCoarseToFine(pyramid, meansOf(initial.frames),
                                                      ChainPrior(submaps, prior_weight_), options(), report);
   joined.status = result.status;

@@ -2,25 +2,58 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <cstdint>
 #include <tuple>
 
 namespace submap_slam::grid_joining {
 namespace {
 
-int floorDiv(int value, int divisor) {
-  return static_cast<int>(std::floor(static_cast<double>(value) / static_cast<double>(divisor)));
+/** A submap's claim to a tile. */
+struct Claim {
+  int b, a;
+  std::size_t submap;
+  bool surface;
+};
+
+int tileOf(double coordinate) { return static_cast<int>(std::floor(coordinate / kTile)); }
+
+/** Adds a claim for each tile that the submap touches. */
+void claimTiles(const PlacedLevel& placed, std::size_t submap, std::vector<Claim>& claims) {
+  const std::size_t first = claims.size();
+  const double half = 0.5 * EvidenceLevel::kBlock, reach = placed.blockReach();
+  for (const EvidenceLevel::Block& block : placed.level().blocks()) {
+    const double a = placed.aOf(block.column + half, block.row + half);
+    const double b = placed.bOf(block.column + half, block.row + half);
+    for (int tb = tileOf(b - reach); tb <= tileOf(b + reach); ++tb)
+      for (int ta = tileOf(a - reach); ta <= tileOf(a + reach); ++ta)
+        claims.push_back({tb, ta, submap, block.surface != 0});
+  }
+  // Several blocks claim the same tile: one claim is left, of surfaces if there is any.
+  const auto begin = claims.begin() + static_cast<std::ptrdiff_t>(first);
+  std::sort(begin, claims.end(), [](const Claim& x, const Claim& y) {
+    return std::tie(x.b, x.a, y.surface) < std::tie(y.b, y.a, x.surface);
+  });
+  claims.erase(std::unique(begin, claims.end(),
+                           [](const Claim& x, const Claim& y) { return x.b == y.b && x.a == y.a; }),
+               claims.end());
 }
 
-/** Narrows [from, to] to where low ≤ start + k·step ≤ high. */
-void narrow(double start, double step, double high, double& from, double& to) {
-  if (std::abs(step) < 1e-12) {
-    if (start < 0 || start > high) to = from - 1;
-    return;
+std::vector<Tile> overlapTiles(const std::vector<PlacedLevel>& placed) {
+  std::vector<Claim> claims;
+  for (std::size_t i = 0; i < placed.size(); ++i) claimTiles(placed[i], i, claims);
+  std::sort(claims.begin(), claims.end(), [](const Claim& x, const Claim& y) {
+    return std::tie(x.b, x.a, x.submap) < std::tie(y.b, y.a, y.submap);
+  });
+  std::vector<Tile> tiles;
+  for (std::size_t first = 0, next = 0; first < claims.size(); first = next) {
+    const Claim& tile = claims[first];
+    while (next < claims.size() && claims[next].a == tile.a && claims[next].b == tile.b) ++next;
+    if (next - first < 2) continue;
+    tiles.push_back({tile.a * kTile, tile.b * kTile, {}});
+    for (std::size_t k = first; k < next; ++k)
+      tiles.back().members.push_back({claims[k].submap, claims[k].surface});
   }
-  const double a = -start / step, b = (high - start) / step;
-  from = std::max(from, std::min(a, b));
-  to = std::min(to, std::max(a, b));
+  return tiles;
 }
 
 }  // namespace
@@ -32,74 +65,18 @@ PlacedLevel::PlacedLevel(const EvidenceLevel& level, const mrpt::math::TPose2D& 
   row0_ = level.rowOf(s * T_w_s.x - c * T_w_s.y);
 }
 
-std::pair<int, int> PlacedLevel::clip(int a_begin, int a_end, int b) const {
-  double from = 0, to = a_end - a_begin - 1;
-  narrow(columnOf(a_begin, b), cos_, level_->columns() - 1, from, to);
-  narrow(rowOf(a_begin, b), -sin_, level_->rows() - 1, from, to);
-  if (to < from) return {a_begin, a_begin};
-  int first = a_begin + static_cast<int>(std::ceil(from)), last = a_begin + static_cast<int>(std::floor(to));
-  // The borders themselves, and rounding, are decided by the test the sampling relies on.
-  while (first <= last && !contains(first, b)) ++first;
-  while (last >= first && !contains(last, b)) --last;
-  return {first, last + 1};
+double PlacedLevel::blockReach() const {
+  return 0.5 * EvidenceLevel::kBlock * (std::abs(cos_) + std::abs(sin_));
 }
 
-PlacedLevel::Bounds PlacedLevel::bounds() const {
-  double a_min = std::numeric_limits<double>::infinity(), a_max = -a_min, b_min = a_min, b_max = -a_min;
-  for (const int u : {0, level_->columns() - 1})
-    for (const int v : {0, level_->rows() - 1}) {
-      const double du = u - column0_, dv = v - row0_;
-      const double a = cos_ * du - sin_ * dv, b = sin_ * du + cos_ * dv;
-      a_min = std::min(a_min, a), a_max = std::max(a_max, a);
-      b_min = std::min(b_min, b), b_max = std::max(b_max, b);
-    }
-  return {static_cast<int>(std::floor(a_min)), static_cast<int>(std::ceil(a_max)) + 1,
-          static_cast<int>(std::floor(b_min)), static_cast<int>(std::ceil(b_max)) + 1};
+bool Tile::hasSurface() const {
+  return std::any_of(members.begin(), members.end(), [](const TileMember& m) { return m.surface; });
 }
 
-bool PlacedLevel::touchesTile(int a, int b) const {
-  const double half_a = 0.5 * (kTileColumns - 1), half_b = 0.5 * (kTileRows - 1);
-  const double a_mid = a + half_a, b_mid = b + half_b;
-  const double column = column0_ + cos_ * a_mid + sin_ * b_mid, row = row0_ - sin_ * a_mid + cos_ * b_mid;
-  const double reach_u = std::abs(cos_) * half_a + std::abs(sin_) * half_b;
-  const double reach_v = std::abs(sin_) * half_a + std::abs(cos_) * half_b;
-  return column + reach_u >= 0 && column - reach_u <= level_->columns() - 1 && row + reach_v >= 0 &&
-         row - reach_v <= level_->rows() - 1;
-}
-
-std::vector<PlacedLevel> placeAll(const EvidenceLevels& level, const Frames& frames, double lattice_angle) {
-  std::vector<PlacedLevel> placed;
-  placed.reserve(level.size());
-  for (std::size_t i = 0; i < level.size(); ++i) placed.emplace_back(level[i], frames[i], lattice_angle);
-  return placed;
-}
-
-std::vector<Tile> overlapTiles(const std::vector<PlacedLevel>& placed) {
-  struct Entry {
-    int b, a;
-    std::size_t submap;
-    bool operator<(const Entry& other) const {
-      return std::tie(b, a, submap) < std::tie(other.b, other.a, other.submap);
-    }
-  };
-  std::vector<Entry> entries;
-  for (std::size_t i = 0; i < placed.size(); ++i) {
-    if (placed[i].level().empty()) continue;
-    const auto box = placed[i].bounds();
-    for (int b = floorDiv(box.b_min, kTileRows) * kTileRows; b < box.b_max; b += kTileRows)
-      for (int a = floorDiv(box.a_min, kTileColumns) * kTileColumns; a < box.a_max; a += kTileColumns)
-        if (placed[i].touchesTile(a, b)) entries.push_back({b, a, i});
-  }
-  std::sort(entries.begin(), entries.end());
-
-  std::vector<Tile> tiles;
-  for (std::size_t first = 0, next = 0; first < entries.size(); first = next) {
-    Tile tile{entries[first].a, entries[first].b, {}};
-    for (; next < entries.size() && entries[next].a == tile.a && entries[next].b == tile.b; ++next)
-      tile.submaps.push_back(entries[next].submap);
-    if (tile.submaps.size() > 1) tiles.push_back(std::move(tile));
-  }
-  return tiles;
+PlacedLevels::PlacedLevels(const EvidenceLevels& levels, const Frames& frames, double lattice_angle) {
+  submaps.reserve(levels.size());
+  for (std::size_t i = 0; i < levels.size(); ++i) submaps.emplace_back(levels[i], frames[i], lattice_angle);
+  tiles = overlapTiles(submaps);
 }
 
 }  // namespace submap_slam::grid_joining

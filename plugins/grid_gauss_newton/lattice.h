@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <utility>
 #include <vector>
 
 #include "pose_system.h"
@@ -9,8 +8,8 @@
 
 namespace submap_slam::grid_joining {
 
-/** Size of the tiles the global lattice is walked in; a row of a tile is what is sampled at once. */
-constexpr int kTileColumns = 64, kTileRows = 16;
+/** Side of the square tiles in which the global lattice is walked. */
+constexpr int kTile = 16;
 
 /** One level of a submap placed on the global lattice. Lattice point (a, b) lies at Rot(lattice_angle) ·
  * s·(a, b) in the global map frame, s = cell size of the level. A lattice parallel to walls would make the
@@ -24,19 +23,18 @@ class PlacedLevel {
   /** Index coordinates of lattice point (a, b) in the level. */
   double columnOf(int a, int b) const { return column0_ + cos_ * a + sin_ * b; }
   double rowOf(int a, int b) const { return row0_ - sin_ * a + cos_ * b; }
-  bool contains(int a, int b) const { return level_->contains(columnOf(a, b), rowOf(a, b)); }
 
-  /** Those a in [a_begin, a_end) for which (a, b) lies in the level, as a half-open interval. */
-  std::pair<int, int> clip(int a_begin, int a_end, int b) const;
+  /** What the index coordinates grow by with a: (column, row); with b it is (−row, column). */
+  double columnStep() const { return cos_; }
+  double rowStep() const { return -sin_; }
 
-  /** Half-open bounds on the lattice: a_min, a_max, b_min, b_max. */
-  struct Bounds {
-    int a_min = 0, a_max = 0, b_min = 0, b_max = 0;
-  };
-  Bounds bounds() const;
+  /** Lattice coordinates of index coordinates. */
+  double aOf(double column, double row) const { return cos_ * (column - column0_) - sin_ * (row - row0_); }
+  double bOf(double column, double row) const { return sin_ * (column - column0_) + cos_ * (row - row0_); }
 
-  /** Whether any lattice point of [a, a + kTileColumns) × [b, b + kTileRows) may lie in the level. */
-  bool touchesTile(int a, int b) const;
+  /** Largest distance along a or b from the centre of a block of cells to a look-up in it, in lattice steps.
+   */
+  double blockReach() const;
 
  private:
   const EvidenceLevel* level_;
@@ -44,16 +42,26 @@ class PlacedLevel {
   double column0_, row0_;
 };
 
-/** Place every non-empty level; the order is that of the submaps, empty ones keep their place. */
-std::vector<PlacedLevel> placeAll(const EvidenceLevels& level, const Frames& frames, double lattice_angle);
+/** A submap that may be seen in a tile. */
+struct TileMember {
+  std::size_t submap = 0;
+  bool surface = false;  ///< it may show surfaces there; without any the tile adds nothing to the cost
+};
 
 /** A tile of the lattice and the submaps that may be seen in it, in ascending order. */
 struct Tile {
   int a = 0, b = 0;  ///< its first lattice point
-  std::vector<std::size_t> submaps;
+  std::vector<TileMember> members;
+
+  bool hasSurface() const;
 };
 
-/** All tiles that two or more submaps touch, row by row. */
-std::vector<Tile> overlapTiles(const std::vector<PlacedLevel>& placed);
+/** All submaps at one resolution, placed, and where they may overlap. */
+struct PlacedLevels {
+  PlacedLevels(const EvidenceLevels& levels, const Frames& frames, double lattice_angle);
+
+  std::vector<PlacedLevel> submaps;  ///< in the order given
+  std::vector<Tile> tiles;           ///< those that two or more submaps touch, row by row
+};
 
 }  // namespace submap_slam::grid_joining

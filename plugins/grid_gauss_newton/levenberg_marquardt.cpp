@@ -10,10 +10,15 @@ namespace {
 
 constexpr double kDampingUp = 10, kDampingDown = 0.1, kSmallestDamping = 1e-9;
 
+/** Less damping than that hardly changes a step, so it is not tried after a step that was refused. */
+constexpr double kEffectiveDamping = 1e-2;
+
+constexpr double kLongestStretch = 5;
+
 /** How much lower the trial is than `now`, as the problem wants it judged; negative if higher. */
 double decrease(const LevelProblem& problem, const Evaluation& now, const Evaluation& trial) {
   if (!problem.per_overlap) return now.objective - trial.objective;
-  return now.objective - objectiveAtOverlap(trial, problem.evidence_variance, now.evidence.overlap_weight);
+  return now.objective - objectiveAtOverlap(trial, problem.evidence_variance, now.overlap);
 }
 
 std::optional<Eigen::VectorXd> dampedStep(const LevelProblem& problem,
@@ -32,6 +37,17 @@ std::optional<Eigen::VectorXd> dampedStep(const LevelProblem& problem,
   return options.step(frames, pose_terms, held);
 }
 
+/** How far the next step should go, in Gauss-Newton steps: the ratio of the curvature that the normal
+ * equations promised along the last step to the one that its gradients show (Barzilai and Borwein 1988, in
+ * the metric of the normal equations). The roughness of the evidence adds to J^T J, but not to the curvature
+ * of the cost, so that plain steps are several times too short where there is little structure. */
+double secantStretch(const Eigen::VectorXd& step, double stretch, const PoseSystem& before,
+                     const PoseSystem& after) {
+  const double promised = -stretch * step.dot(before.denseGradient());
+  const double seen = step.dot(after.denseGradient() - before.denseGradient());
+  return seen * kLongestStretch > promised ? std::max(1.0, promised / seen) : kLongestStretch;
+}
+
 JoinIteration describe(const Eigen::VectorXd& step, double objective) {
   JoinIteration iteration;
   iteration.cost = objective;
@@ -45,18 +61,25 @@ JoinIteration describe(const Eigen::VectorXd& step, double objective) {
 }  // namespace
 
 Evaluation evaluate(const LevelProblem& problem, const Frames& frames) {
-  Evaluation e{reduce(problem.level, frames, problem.jacobian, problem.lattice_angle),
+  const PlacedLevels placed(problem.level, frames, problem.lattice_angle);
+  Evaluation e{problem.single_precision ? reduce<float>(placed, frames, problem.jacobian)
+                                        : reduce<double>(placed, frames, problem.jacobian),
                problem.prior.linearise(frames), PoseSystem(frames.size())};
+  if (problem.per_overlap) e.overlap = overlapWeight(placed);
   e.prior_cost = problem.prior.cost(frames);
-  e.objective = e.evidence.cost / problem.evidence_variance + e.prior_cost;
-  e.total.add(e.evidence.system, 1 / problem.evidence_variance);
-  e.total.add(e.prior, 1);
+  weigh(problem, e);
   return e;
 }
 
-double objectiveAtOverlap(const Evaluation& evaluation, double evidence_variance, double overlap_weight) {
-  if (evaluation.evidence.overlap_weight <= 0) return std::numeric_limits<double>::infinity();
-  const double scale = overlap_weight / evaluation.evidence.overlap_weight;
+void weigh(const LevelProblem& problem, Evaluation& e) {
+  e.objective = e.evidence.cost / problem.evidence_variance + e.prior_cost;
+  e.total = e.prior;
+  e.total.add(e.evidence.system, 1 / problem.evidence_variance);
+}
+
+double objectiveAtOverlap(const Evaluation& evaluation, double evidence_variance, double overlap) {
+  if (evaluation.overlap <= 0) return std::numeric_limits<double>::infinity();
+  const double scale = overlap / evaluation.overlap;
   return scale * evaluation.evidence.cost / evidence_variance + evaluation.prior_cost;
 }
 
@@ -86,14 +109,14 @@ const char* toString(StopReason reason) {
   return "unknown";
 }
 
-LevelResult optimise(const LevelProblem& problem, const Frames& start,
+LevelResult optimise(const LevelProblem& problem, const Frames& start, const Evaluation& at_start,
                      const LevenbergMarquardtOptions& options, const IterationCallback& callback) {
-  LevelResult now{start, evaluate(problem, start), {}, StopReason::kIterationLimit};
+  LevelResult now{start, at_start, {}, StopReason::kIterationLimit};
   const std::vector<bool> held = anchorsOf(now.evaluation.total);
-  double damping = options.first_damping;
+  double damping = options.first_damping, stretch = 1;
   for (int k = 0; k < options.max_iterations; ++k) {
     const auto step = dampedStep(problem, options, now.frames, now.evaluation, held, damping);
-    Frames trial_frames = step ? moved(now.frames, *step) : now.frames;
+    Frames trial_frames = step ? moved(now.frames, stretch * *step) : now.frames;
     Evaluation trial = step ? evaluate(problem, trial_frames) : now.evaluation;
     const double gain = decrease(problem, now.evaluation, trial);
     JoinIteration iteration = step ? describe(*step, std::min(now.evaluation.objective, trial.objective))
@@ -102,11 +125,13 @@ LevelResult optimise(const LevelProblem& problem, const Frames& start,
         step && iteration.max_step_m < options.max_step_m && iteration.max_step_rad < options.max_step_rad;
     const bool small_decrease = gain > 0 && gain < options.cost_decrease * now.evaluation.objective;
     if (gain > 0) {
+      stretch = secantStretch(*step, stretch, now.evaluation.total, trial.total);
       now.frames = std::move(trial_frames);
       now.evaluation = std::move(trial);
       damping = std::max(kSmallestDamping, damping * kDampingDown);
     } else {
-      damping *= kDampingUp;
+      stretch = 1;
+      damping = std::max(kEffectiveDamping, damping * kDampingUp);
     }
     now.iterations.push_back(iteration);
     if (callback && !callback(iteration)) return now.stop = StopReason::kCancelled, now;

@@ -20,6 +20,8 @@ struct LevelProblem {
   /** Judge a step by the cost per overlap instead of the cost: needed where frames are far off, because
    * frames that drift apart have less overlap and so less cost. */
   bool per_overlap = false;
+
+  bool single_precision = true;  ///< of the sums over the cells of a tile, see reduce()
 };
 
 /** F and its normal equations at one set of frames. */
@@ -29,12 +31,16 @@ struct Evaluation {
   PoseSystem total;  ///< evidence / evidence_variance + prior
   double prior_cost = 0;
   double objective = 0;  ///< F
+  double overlap = 0;    ///< overlapWeight at these frames, if the problem asks for it
 };
 Evaluation evaluate(const LevelProblem& problem, const Frames& frames);
 
+/** Weighs evidence and prior of an evaluation anew after the problem's evidence variance has changed. */
+void weigh(const LevelProblem& problem, Evaluation& evaluation);
+
 /** F with the evidence scaled to the given overlap, to compare frames whose overlap differs; infinite without
- * overlap. */
-double objectiveAtOverlap(const Evaluation& evaluation, double evidence_variance, double overlap_weight);
+ * overlap. The evaluation must be that of a problem with `per_overlap`. */
+double objectiveAtOverlap(const Evaluation& evaluation, double evidence_variance, double overlap);
 
 /** Variance of one evidence residual from the residuals themselves, cost / (observations − cells), times the
  * number of cells that err together, (correlation_length / cell size)²: neighbouring cells share beams,
@@ -71,10 +77,10 @@ struct LevelResult {
 /** Called after each iteration; false stops. */
 using IterationCallback = std::function<bool(const JoinIteration&)>;
 
-/** Gauss-Newton with Levenberg-Marquardt damping from `start`: a step is taken only if it lowers the
- * objective, so the result is never worse than the start. The first frame of every connected group stays
- * where it is. */
-LevelResult optimise(const LevelProblem& problem, const Frames& start,
+/** Gauss-Newton with Levenberg-Marquardt damping: a step is taken only if it lowers the objective, so the
+ * result is never worse than the start. The first frame of every connected group stays where it is.
+ * @param at_start the evaluation at `start` */
+LevelResult optimise(const LevelProblem& problem, const Frames& start, const Evaluation& at_start,
                      const LevenbergMarquardtOptions& options, const IterationCallback& callback);
 
 }  // namespace submap_slam::grid_joining

@@ -3,19 +3,42 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace submap_slam::grid_joining {
+namespace {
 
-EvidenceLevel::EvidenceLevel(double x0, double y0, double resolution, int columns, int rows)
-    : x0_(x0),
-      y0_(y0),
-      resolution_(resolution),
-      columns_(columns),
-      rows_(rows),
-      cells_(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)) {}
+/** Log-odds that differ from the background by a smaller share are rounding of the sums. */
+constexpr double kRounding = 1e-4;
 
-EvidenceLevel EvidenceLevel::fromGrid(const EvidenceGrid& grid) {
+float aboveBackground(float log_odds, float hits, double background) {
+  const double expected = background * static_cast<double>(hits);
+  const double excess = static_cast<double>(log_odds) - expected;
+  return std::abs(excess) <= kRounding * std::abs(expected) ? 0.0f : static_cast<float>(excess);
+}
+
+/** Bilinear value and gradient per cell of the four corners of a cell, in the order (0, 0), (1, 0), (0, 1),
+ * (1, 1). */
+void interpolate(const std::array<double, 4>& corner, double a, double b, double scale, double& value,
+                 std::array<double, 2>& gradient) {
+  const double lower = corner[1] - corner[0], upper = corner[3] - corner[2];
+  const double bottom = corner[0] + a * lower, top = corner[2] + a * upper;
+  value = bottom + b * (top - bottom);
+  gradient = {scale * (lower + b * (upper - lower)), scale * (top - bottom)};
+}
+
+}  // namespace
+
+EvidenceRaster::EvidenceRaster(double x0_m, double y0_m, double cell_size, int column_count, int row_count)
+    : x0(x0_m),
+      y0(y0_m),
+      resolution(cell_size),
+      columns(column_count),
+      rows(row_count),
+      cells(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)) {}
+
+EvidenceRaster EvidenceRaster::fromGrid(const EvidenceGrid& grid, double background) {
   const int nx = static_cast<int>(grid.sizeX()), ny = static_cast<int>(grid.sizeY());
   int left = nx, right = -1, bottom = ny, top = -1;
   auto hits = grid.hits.begin();
@@ -27,56 +50,130 @@ EvidenceLevel EvidenceLevel::fromGrid(const EvidenceGrid& grid) {
     }
   if (right < left) return {};
 
-  EvidenceLevel level(grid.log_odds.idx2x(left - 1), grid.log_odds.idx2y(bottom - 1), grid.resolution(),
-                      right - left + 3, top - bottom + 3);
+  EvidenceRaster raster(grid.log_odds.idx2x(left - 1), grid.log_odds.idx2y(bottom - 1), grid.resolution(),
+                        right - left + 3, top - bottom + 3);
   for (int y = bottom; y <= top; ++y)
     for (int x = left; x <= right; ++x) {
       const std::size_t source = static_cast<std::size_t>(y) * grid.sizeX() + static_cast<std::size_t>(x);
-      if (grid.hits.data()[source] <= 0) continue;
-      level.mutableCell(x - left + 1, y - bottom + 1) = {grid.log_odds.data()[source],
-                                                         grid.hits.data()[source]};
+      const float n = grid.hits.data()[source];
+      if (n <= 0) continue;
+      raster.cell(x - left + 1, y - bottom + 1) = {
+          aboveBackground(grid.log_odds.data()[source], n, background), n};
     }
-  return level;
+  return raster;
 }
 
-EvidenceLevel EvidenceLevel::halved() const {
-  if (empty()) return {};
-  // Cell 1 of the coarse level holds cells 1 and 2 of this one; cell 0 stays the rim.
-  const int inner_columns = (columns_ - 1) / 2, inner_rows = (rows_ - 1) / 2;
-  EvidenceLevel coarse(x0_ - 0.5 * resolution_, y0_ - 0.5 * resolution_, 2 * resolution_, inner_columns + 2,
-                       inner_rows + 2);
-  for (int r = 1; r < rows_ - 1; ++r)
-    for (int c = 1; c < columns_ - 1; ++c) {
-      EvidenceCell& sum = coarse.mutableCell((c + 1) / 2, (r + 1) / 2);
+EvidenceRaster EvidenceRaster::halved() const {
+  if (cells.empty()) return {};
+  // Cell 1 of the coarse raster holds cells 1 and 2 of this one; cell 0 stays the rim.
+  const int inner_columns = (columns - 1) / 2, inner_rows = (rows - 1) / 2;
+  EvidenceRaster coarse(x0 - 0.5 * resolution, y0 - 0.5 * resolution, 2 * resolution, inner_columns + 2,
+                        inner_rows + 2);
+  for (int r = 1; r < rows - 1; ++r)
+    for (int c = 1; c < columns - 1; ++c) {
+      EvidenceCell& sum = coarse.cell((c + 1) / 2, (r + 1) / 2);
       sum.log_odds += cell(c, r).log_odds;
       sum.hits += cell(c, r).hits;
     }
   return coarse;
 }
 
-void EvidenceLevel::standardise() {
-  for (EvidenceCell& c : cells_) {
+void EvidenceRaster::standardise() {
+  for (EvidenceCell& c : cells) {
     if (c.hits <= 0) continue;
     c.hits = std::sqrt(c.hits);
     c.log_odds /= c.hits;
   }
 }
 
-std::vector<EvidenceLevels> buildPyramid(const GridSubmaps& submaps, int finest_level, int levels) {
-  std::vector<std::vector<EvidenceLevel>> of_submap(submaps.size());
+EvidenceLevel::EvidenceLevel(const EvidenceRaster& raster)
+    : x0_(raster.x0), y0_(raster.y0), resolution_(raster.resolution) {
+  if (raster.cells.empty()) return;
+  const int columns = (raster.columns + kBlock - 1) / kBlock, rows = (raster.rows + kBlock - 1) / kBlock;
+  table_columns_ = static_cast<std::size_t>(columns + 2 * kMargin);
+  table_rows_ = static_cast<std::size_t>(rows + 2 * kMargin);
+  numbers_.assign(table_columns_ * table_rows_, 0);
+  surfaces_.assign(table_columns_ * table_rows_, 0);
+  cells_.resize(kStride * kStride);
+  for (int r = 0; r < rows; ++r)
+    for (int c = 0; c < columns; ++c) addBlock(raster, c, r);
+  blocks_.shrink_to_fit();
+  cells_.shrink_to_fit();
+}
+
+void EvidenceLevel::addBlock(const EvidenceRaster& raster, int block_column, int block_row) {
+  const Block corner{block_column * kBlock, block_row * kBlock, 0};
+  std::array<EvidenceCell, kStride * kStride> cells{};
+  const int columns = std::min(kStride, raster.columns - corner.column);
+  const int rows = std::min(kStride, raster.rows - corner.row);
+  for (int r = 0; r < rows; ++r)
+    std::copy_n(&raster.cell(corner.column, corner.row + r), columns, cells.begin() + r * kStride);
+  if (std::none_of(cells.begin(), cells.end(), [](const EvidenceCell& c) { return c.hits > 0; })) return;
+
+  Block block = corner;
+  const auto above = [&cells](int c, int r) {
+    return cells[static_cast<std::size_t>(r * kStride + c)].log_odds != 0;
+  };
+  for (int r = 0; r < kBlock; ++r)
+    for (int c = 0; c < kBlock; ++c)
+      if (above(c, r) || above(c + 1, r) || above(c, r + 1) || above(c + 1, r + 1))
+        block.surface |= uint64_t{1} << (r * kBlock + c);
+  blocks_.push_back(block);
+  cells_.insert(cells_.end(), cells.begin(), cells.end());
+  const std::size_t index = tableIndex(corner.column, corner.row);
+  numbers_[index] = static_cast<int32_t>(blocks_.size());
+  surfaces_[index] = block.surface;
+}
+
+bool EvidenceLevel::tableHolds(double column, double row) const {
+  const double margin = kMargin * kBlock;
+  return column >= -margin && row >= -margin &&
+         column < kBlock * static_cast<double>(table_columns_) - margin &&
+         row < kBlock * static_cast<double>(table_rows_) - margin;
+}
+
+EvidenceSample EvidenceLevel::sample(double column, double row) const {
+  EvidenceSample s;
+  if (!tableHolds(column, row)) return s;
+  const double c = std::floor(column), r = std::floor(row);
+  const int ci = static_cast<int>(c), ri = static_cast<int>(r);
+  const EvidenceCell* low = cellsOf(number(ci, ri)) + (ri & (kBlock - 1)) * kStride + (ci & (kBlock - 1));
+  const EvidenceCell* high = low + kStride;
+  const auto corners = [&](float EvidenceCell::*value) {
+    return std::array<double, 4>{static_cast<double>(low[0].*value), static_cast<double>(low[1].*value),
+                                 static_cast<double>(high[0].*value), static_cast<double>(high[1].*value)};
+  };
+  const double scale = 1 / resolution_;
+  interpolate(corners(&EvidenceCell::log_odds), column - c, row - r, scale, s.log_odds, s.log_odds_gradient);
+  interpolate(corners(&EvidenceCell::hits), column - c, row - r, scale, s.hits, s.hits_gradient);
+  return s;
+}
+
+double backgroundOf(const GridSubmaps& submaps) {
+  std::vector<double> least(submaps.size(), std::numeric_limits<double>::infinity());
   tbb::parallel_for(std::size_t{0}, submaps.size(), [&](std::size_t i) {
-    EvidenceLevel level = EvidenceLevel::fromGrid(submaps[i]->evidence);
-    for (int k = 0; k < finest_level; ++k) level = level.halved();
-    for (int k = 0; k < levels; ++k) {
-      EvidenceLevel coarser = k + 1 < levels ? level.halved() : level;
-      if (k > 0) level.standardise();
-      of_submap[i].push_back(std::exchange(level, std::move(coarser)));
+    const LoadedEvidence grid(*submaps[i]);
+    auto log_odds = grid->log_odds.begin();
+    for (const float hits : grid->hits.data()) {
+      const double sum = static_cast<double>(*log_odds++);
+      if (hits > 0) least[i] = std::min(least[i], sum / static_cast<double>(hits));
     }
   });
+  const double all = least.empty() ? 0 : *std::min_element(least.begin(), least.end());
+  return std::isfinite(all) ? all : 0;
+}
 
-  std::vector<EvidenceLevels> pyramid(static_cast<std::size_t>(levels));
-  for (auto& stack : of_submap)
-    for (std::size_t k = 0; k < stack.size(); ++k) pyramid[k].push_back(std::move(stack[k]));
+std::vector<EvidenceLevels> buildPyramid(const GridSubmaps& submaps, const PyramidShape& shape) {
+  std::vector<EvidenceLevels> pyramid(static_cast<std::size_t>(shape.levels), EvidenceLevels(submaps.size()));
+  tbb::parallel_for(std::size_t{0}, submaps.size(), [&](std::size_t i) {
+    EvidenceRaster raster = EvidenceRaster::fromGrid(*LoadedEvidence(*submaps[i]), shape.background);
+    for (int k = 0; k < shape.finest_level; ++k) raster = raster.halved();
+    for (std::size_t k = 0; k < pyramid.size(); ++k) {
+      EvidenceRaster coarser = k + 1 < pyramid.size() ? raster.halved() : EvidenceRaster();
+      if (k > 0) raster.standardise();
+      pyramid[k][i] = EvidenceLevel(std::exchange(raster, std::move(coarser)));
+    }
+  });
   return pyramid;
 }
 

@@ -4,13 +4,14 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace submap_slam::grid_joining {
 
 /** Evidence of one cell, both values next to each other because every look-up needs both. */
 struct EvidenceCell {
-  float log_odds = 0;  ///< sum of log-odds, positive = occupied
+  float log_odds = 0;  ///< sum of log-odds above the background, positive = occupied
   float hits = 0;      ///< number of observations; 0: unknown
 };
 
@@ -20,27 +21,58 @@ struct EvidenceSample {
   std::array<double, 2> log_odds_gradient{}, hits_gradient{};  ///< per metre
 };
 
-/** The observed part of one submap at one resolution, with a rim of unknown cells one cell wide, so that the
- * interpolated fields are continuous everywhere and need no bounds check inside [0, columns − 1) × [0, rows −
- * 1). */
-class EvidenceLevel {
- public:
-  /** Crops the grid to its observed cells; the level is empty if there are none. */
-  static EvidenceLevel fromGrid(const EvidenceGrid& grid);
+/** The observed part of one submap at one resolution as a plain array, with a rim of unknown cells one cell
+ * wide. Only an intermediate on the way to an EvidenceLevel. */
+struct EvidenceRaster {
+  double x0 = 0, y0 = 0;  ///< centre of cell (0, 0), which belongs to the rim, in the local map frame (m)
+  double resolution = 1;  ///< m per cell
+  int columns = 0, rows = 0;
+  std::vector<EvidenceCell> cells;  ///< row by row
+
+  EvidenceRaster() = default;
+  EvidenceRaster(double x0, double y0, double resolution, int columns, int rows);
+
+  /** Crops the grid to its observed cells; empty if there are none.
+   * @param background log-odds per hit that are taken off, see backgroundOf */
+  static EvidenceRaster fromGrid(const EvidenceGrid& grid, double background = 0);
 
   /** Twice the cell size; each cell is the sum of 2 × 2 cells. */
-  EvidenceLevel halved() const;
+  EvidenceRaster halved() const;
 
   /** Gives every observation the same weight: L ← L/√N, N ← √N, so that the joint cost becomes Σ N (m −
    * L/N)². Coarse cells hold so many observations that the plain sums would be ruled by a few of them. */
   void standardise();
 
-  bool empty() const { return cells_.empty(); }
-  double resolution() const { return resolution_; }  ///< m per cell
-  int columns() const { return columns_; }
-  int rows() const { return rows_; }
+  EvidenceCell& cell(int column, int row) { return cells[index(column, row)]; }
+  const EvidenceCell& cell(int column, int row) const { return cells[index(column, row)]; }
 
-  /** Index coordinates (cell centres are integers) of a point in the local map frame (m). */
+ private:
+  std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+           static_cast<std::size_t>(column);
+  }
+};
+
+/** The evidence of one submap at one resolution. Only blocks of 8 × 8 cells with something observed are
+ * stored: a submap fills a tenth of its bounding box. Index coordinates (cell centres are integers) count
+ * from the raster's cell (0, 0); everything outside the raster is unknown, so the interpolated fields are
+ * continuous everywhere. */
+class EvidenceLevel {
+ public:
+  static constexpr int kBlockShift = 3, kBlock = 1 << kBlockShift;
+
+  /** A block is stored with the first row and column of the next ones: every look-up needs one block only. */
+  static constexpr int kStride = kBlock + 1;
+
+  /** Blocks around the raster that may be looked up without asking. */
+  static constexpr int kMargin = 5;
+
+  EvidenceLevel() = default;
+  explicit EvidenceLevel(const EvidenceRaster& raster);
+
+  bool empty() const { return blocks_.empty(); }
+  double resolution() const { return resolution_; }  ///< m per cell
+
   double columnOf(double x) const { return (x - x0_) / resolution_; }
   double rowOf(double y) const { return (y - y0_) / resolution_; }
 
@@ -48,53 +80,60 @@ class EvidenceLevel {
   double xOf(double column) const { return x0_ + column * resolution_; }
   double yOf(double row) const { return y0_ + row * resolution_; }
 
-  const EvidenceCell& cell(int column, int row) const { return cells_[index(column, row)]; }
+  /** Bilinear interpolation anywhere. */
+  EvidenceSample sample(double column, double row) const;
 
-  bool contains(double column, double row) const {
-    return column >= 0 && row >= 0 && column < columns_ - 1 && row < rows_ - 1;
-  }
+  /** A stored block: look-ups (c + a, r + b), 0 ≤ a, b < 1, with (c, r) in it may see something. */
+  struct Block {
+    int column = 0, row = 0;  ///< its first cell
+    uint64_t surface = 0;     ///< bit 8·r + c: a look-up there sees log-odds above the background
+  };
+  const std::vector<Block>& blocks() const { return blocks_; }
 
-  /** Bilinear interpolation; (column, row) must be contained. */
-  EvidenceSample sample(double column, double row) const {
-    const int c = static_cast<int>(column), r = static_cast<int>(row);
-    const double a = column - c, b = row - r, scale = 1 / resolution_;
-    const EvidenceCell *low = &cell(c, r), *high = low + columns_;
-    EvidenceSample s;
-    interpolate({low[0].log_odds, low[1].log_odds, high[0].log_odds, high[1].log_odds}, a, b, scale,
-                s.log_odds, s.log_odds_gradient);
-    interpolate({low[0].hits, low[1].hits, high[0].hits, high[1].hits}, a, b, scale, s.hits, s.hits_gradient);
-    return s;
+  /** Where the blocks are, for look-ups at speed. `number` is 0 for blocks that aren't stored (cells there
+   * are unknown) and k + 1 for blocks()[k]; `surface` is the block's. (column, row) may lie kMargin blocks
+   * outside the raster. */
+  int number(int column, int row) const { return numbers_[tableIndex(column, row)]; }
+  uint64_t surface(int column, int row) const { return surfaces_[tableIndex(column, row)]; }
+
+  /** The kStride × kStride cells of a block, row by row. */
+  const EvidenceCell* cellsOf(int number) const {
+    return cells_.data() + static_cast<std::size_t>(number) * kStride * kStride;
   }
 
  private:
-  static void interpolate(const std::array<double, 4>& corner, double a, double b, double scale,
-                          double& value, std::array<double, 2>& gradient) {
-    const double lower = corner[1] - corner[0], upper = corner[3] - corner[2];
-    const double bottom = corner[0] + a * lower, top = corner[2] + a * upper;
-    value = bottom + b * (top - bottom);
-    gradient = {scale * (lower + b * (upper - lower)), scale * (top - bottom)};
+  void addBlock(const EvidenceRaster& raster, int block_column, int block_row);
+  bool tableHolds(double column, double row) const;
+  std::size_t tableIndex(int column, int row) const {
+    return static_cast<std::size_t>((row >> kBlockShift) + kMargin) * table_columns_ +
+           static_cast<std::size_t>((column >> kBlockShift) + kMargin);
   }
 
-  EvidenceLevel() = default;
-  EvidenceLevel(double x0, double y0, double resolution, int columns, int rows);
-  EvidenceCell& mutableCell(int column, int row) { return cells_[index(column, row)]; }
-  std::size_t index(int column, int row) const {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-           static_cast<std::size_t>(column);
-  }
-
-  double x0_ = 0, y0_ = 0;  // centre of cell (0, 0), which belongs to the rim, in the local map frame (m)
-  double resolution_ = 1;
-  int columns_ = 0, rows_ = 0;
-  std::vector<EvidenceCell> cells_;  // row by row
+  double x0_ = 0, y0_ = 0, resolution_ = 1;
+  std::size_t table_columns_ = 0, table_rows_ = 0;
+  std::vector<int32_t> numbers_;    // row by row
+  std::vector<uint64_t> surfaces_;  // row by row
+  std::vector<Block> blocks_;
+  std::vector<EvidenceCell> cells_;  // block by block, the first one unknown
 };
 
 /** All submaps at one resolution, in the order of the submaps. */
 using EvidenceLevels = std::vector<EvidenceLevel>;
 
+/** The least log-odds per hit of any cell: that of free space, where nothing but free evidence was seen. Cost
+ * and normal equations do not change when it is taken off everywhere, L ← L − background · N (the paper's
+ * Jacobian excepted); then free space is exactly zero and only cells near surfaces need work. */
+double backgroundOf(const GridSubmaps& submaps);
+
+struct PyramidShape {
+  int finest_level = 0;  ///< levels finer than that are not kept
+  int levels = 1;
+  double background = 0;  ///< see backgroundOf
+};
+
 /** Levels finest_level … finest_level + levels − 1 of all submaps, finest first; level k has cells of 2ᵏ
  * times the submaps' size. The finest one keeps the plain sums of the paper's objective, the coarser ones are
- * standardised. Levels finer than `finest_level` are not kept. */
-std::vector<EvidenceLevels> buildPyramid(const GridSubmaps& submaps, int finest_level, int levels);
+ * standardised. */
+std::vector<EvidenceLevels> buildPyramid(const GridSubmaps& submaps, const PyramidShape& shape);
 
 }  // namespace submap_slam::grid_joining

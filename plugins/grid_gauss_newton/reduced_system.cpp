@@ -1,178 +1,141 @@
 #include "reduced_system.h"
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <vector>
+
+#include "tile_kernel.h"
 
 namespace submap_slam::grid_joining {
 namespace {
 
 /** More blocks than any machine has threads, few enough that adding them up costs nothing. */
-constexpr std::size_t kBlocks = 64;
+constexpr std::size_t kBlocks = 32;
 
-struct Observation {
-  EvidenceSample value;
-  double px = 0, py = 0;  ///< point in the local map frame (m)
-};
+/** Calls sum(block, begin, end) for each block of tiles [begin, end). */
+template <class Sum>
+std::size_t forBlocksOfTiles(const std::vector<Tile>& tiles, Sum sum) {
+  const std::size_t blocks = std::min(kBlocks, tiles.size());
+  tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
+    sum(block, block * tiles.size() / blocks, (block + 1) * tiles.size() / blocks);
+  });
+  return blocks;
+}
 
-/** Working memory for one tile, and its sums in the submaps' own axes. */
+/** The sums of a block of tiles, with the pairs' blocks found by index. */
 class TileSums {
  public:
-  explicit TileSums(JacobianKind jacobian) : jacobian_(jacobian) {}
+  explicit TileSums(std::size_t frames) : total_(frames), index_(frames * frames, -1) {}
 
-  void accumulate(const Tile& tile, const std::vector<PlacedLevel>& placed, ReducedSystem& total);
-  void addTo(const Tile& tile, const std::vector<Eigen::Matrix3d>& motions, PoseSystem& system) const;
+  template <class Scalar>
+  void add(const TileKernel<Scalar>& kernel, const Tile& tile);
+
+  ReducedSystem total() const;
 
  private:
-  void reset(std::size_t submaps);
-  void sampleRow(const Tile& tile, const std::vector<PlacedLevel>& placed, int b);
-  void reduceCell(int column, ReducedSystem& total);
-  void addNormalEquations();
+  Eigen::Matrix3d& block(std::size_t i, std::size_t k);
 
-  Observation& observation(std::size_t slot, int column) {
-    return row_[slot * kTileColumns + static_cast<std::size_t>(column)];
-  }
-  Eigen::Matrix3d& block(std::size_t a, std::size_t b) { return blocks_[a * slots_ + b]; }
-  const Eigen::Matrix3d& block(std::size_t a, std::size_t b) const { return blocks_[a * slots_ + b]; }
-
-  /** What one submap brings to the cell at hand. */
-  struct Term {
-    std::size_t slot;
-    const Observation* observation;
-    double weight, residual;
-    Eigen::Vector3d jacobian;
-    bool flat;  ///< the row J_i is zero
-  };
-
-  JacobianKind jacobian_;
-  std::size_t slots_ = 0;
-  std::vector<Observation> row_;
-  std::array<int, kTileColumns> seen_by_{};
-  std::vector<Term> terms_;
-  std::vector<Eigen::Matrix3d> blocks_;
-  std::vector<Eigen::Vector3d> gradients_;
+  ReducedSystem total_;  // without the pairs' blocks
+  std::vector<int> index_;
+  std::vector<std::pair<PosePair, Eigen::Matrix3d>> blocks_;
 };
 
-void TileSums::reset(std::size_t submaps) {
-  slots_ = submaps;
-  row_.resize(std::max(row_.size(), submaps * kTileColumns));
-  terms_.reserve(submaps);
-  blocks_.assign(submaps * submaps, Eigen::Matrix3d::Zero());
-  gradients_.assign(submaps, Eigen::Vector3d::Zero());
-}
-
-void TileSums::accumulate(const Tile& tile, const std::vector<PlacedLevel>& placed, ReducedSystem& total) {
-  reset(tile.submaps.size());
-  for (int b = tile.b; b < tile.b + kTileRows; ++b) {
-    sampleRow(tile, placed, b);
-    for (int column = 0; column < kTileColumns; ++column)
-      if (seen_by_[static_cast<std::size_t>(column)] > 1) reduceCell(column, total);
+Eigen::Matrix3d& TileSums::block(std::size_t i, std::size_t k) {
+  int& index = index_[i * total_.system.frames() + k];
+  if (index < 0) {
+    index = static_cast<int>(blocks_.size());
+    blocks_.emplace_back(PosePair{i, k}, Eigen::Matrix3d::Zero());
   }
+  return blocks_[static_cast<std::size_t>(index)].second;
 }
 
-void TileSums::sampleRow(const Tile& tile, const std::vector<PlacedLevel>& placed, int b) {
-  seen_by_.fill(0);
-  for (std::size_t slot = 0; slot < slots_; ++slot) {
-    const PlacedLevel& submap = placed[tile.submaps[slot]];
-    const EvidenceLevel& level = submap.level();
-    const auto [begin, end] = submap.clip(tile.a, tile.a + kTileColumns, b);
-    for (int column = 0; column < kTileColumns; ++column) observation(slot, column).value.hits = 0;
-    for (int a = begin; a < end; ++a) {
-      const double u = submap.columnOf(a, b), v = submap.rowOf(a, b);
-      observation(slot, a - tile.a) = {level.sample(u, v), level.xOf(u), level.yOf(v)};
-      seen_by_[static_cast<std::size_t>(a - tile.a)] += observation(slot, a - tile.a).value.hits > 0;
-    }
+template <class Scalar>
+void TileSums::add(const TileKernel<Scalar>& kernel, const Tile& tile) {
+  total_.cost += kernel.cost();
+  total_.energy += kernel.energy();
+  total_.observations += kernel.observations();
+  total_.cells += kernel.cells();
+  for (std::size_t a = 0; a < tile.members.size(); ++a) {
+    if (!kernel.contributes(a)) continue;
+    const std::size_t i = tile.members[a].submap;
+    total_.system.gradient[i] += kernel.gradient(a);
+    for (std::size_t b = a; b < tile.members.size(); ++b)
+      if (kernel.contributes(b)) block(i, tile.members[b].submap) += kernel.block(a, b);
   }
 }
 
-void TileSums::reduceCell(int column, ReducedSystem& total) {
-  terms_.clear();
-  double ww = 0, wl = 0, ll = 0, w4 = 0;
-  for (std::size_t slot = 0; slot < slots_; ++slot) {
-    const Observation& o = observation(slot, column);
-    const double w = o.value.hits, l = o.value.log_odds;
-    if (w <= 0) continue;
-    terms_.push_back({slot, &o, w, 0, Eigen::Vector3d::Zero(), true});
-    ww += w * w, wl += w * l, ll += l * l, w4 += w * w * w * w;
-  }
-  const double joint_value = wl / ww, root = 1 / std::sqrt(ww);
-  bool all_flat = true;
-  for (Term& term : terms_) {
-    const EvidenceSample& s = term.observation->value;
-    term.residual = s.log_odds - term.weight * joint_value;
-    total.cost += term.residual * term.residual;
-    term.weight *= root;
-    const Eigen::Vector2d gradient = effectiveGradient(jacobian_, s, joint_value);
-    term.flat = gradient.isZero(0);
-    if (term.flat) continue;
-    term.jacobian = localJacobian(gradient, term.observation->px, term.observation->py);
-    all_flat = false;
-  }
-  total.overlap_weight += 0.5 * (ww - w4 / ww);
-  total.energy += ll;
-  total.observations += terms_.size();
-  ++total.cells;
-  if (!all_flat) addNormalEquations();
+ReducedSystem TileSums::total() const {
+  ReducedSystem total = total_;
+  for (const auto& [pair, block] : blocks_) total.system.addBlock(pair.first, pair.second, block);
+  return total;
 }
 
-void TileSums::addNormalEquations() {
-  for (std::size_t a = 0; a < terms_.size(); ++a) {
-    const Term& i = terms_[a];
-    if (i.flat) continue;
-    gradients_[i.slot] += i.residual * i.jacobian;
-    block(i.slot, i.slot) += ((1 - i.weight * i.weight) * i.jacobian) * i.jacobian.transpose();
-    for (std::size_t b = a + 1; b < terms_.size(); ++b) {
-      const Term& k = terms_[b];
-      if (!k.flat) block(i.slot, k.slot) -= ((i.weight * k.weight) * i.jacobian) * k.jacobian.transpose();
-    }
+/** From motions along the submaps' own axes to motions in the global map frame. */
+PoseSystem toGlobal(const PoseSystem& local, const Frames& frames) {
+  PoseSystem global(frames.size());
+  std::vector<Eigen::Matrix3d> motions;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    motions.push_back(globalToLocalMotion(frames[i].phi));
+    global.gradient[i] = motions[i].transpose() * local.gradient[i];
   }
-}
-
-void TileSums::addTo(const Tile& tile, const std::vector<Eigen::Matrix3d>& motions,
-                     PoseSystem& system) const {
-  for (std::size_t a = 0; a < slots_; ++a) {
-    const std::size_t i = tile.submaps[a];
-    system.gradient[i] += motions[i].transpose() * gradients_[a];
-    for (std::size_t b = a; b < slots_; ++b) {
-      const std::size_t k = tile.submaps[b];
-      if (!block(a, b).isZero(0)) system.addBlock(i, k, motions[i].transpose() * block(a, b) * motions[k]);
-    }
-  }
+  for (const auto& [pair, block] : local.blocks)
+    if (!block.isZero(0))
+      global.addBlock(pair.first, pair.second,
+                      motions[pair.first].transpose() * block * motions[pair.second]);
+  return global;
 }
 
 }  // namespace
 
 void ReducedSystem::add(const ReducedSystem& other) {
   cost += other.cost;
-  overlap_weight += other.overlap_weight;
   energy += other.energy;
   observations += other.observations;
   cells += other.cells;
   system.add(other.system, 1);
 }
 
-ReducedSystem reduce(const EvidenceLevels& level, const Frames& frames, JacobianKind jacobian,
-                     double lattice_angle) {
-  const std::vector<PlacedLevel> placed = placeAll(level, frames, lattice_angle);
-  const std::vector<Tile> tiles = overlapTiles(placed);
-  std::vector<Eigen::Matrix3d> motions;
-  for (const auto& frame : frames) motions.push_back(globalToLocalMotion(frame.phi));
-
-  const std::size_t blocks = std::min(kBlocks, tiles.size());
-  std::vector<ReducedSystem> sums(blocks, ReducedSystem(frames.size()));
-  tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
-    TileSums tile_sums(jacobian);
-    for (std::size_t t = block * tiles.size() / blocks; t < (block + 1) * tiles.size() / blocks; ++t) {
-      tile_sums.accumulate(tiles[t], placed, sums[block]);
-      tile_sums.addTo(tiles[t], motions, sums[block].system);
-    }
-  });
-
+template <class Scalar>
+ReducedSystem reduce(const PlacedLevels& placed, const Frames& frames, JacobianKind jacobian) {
+  std::vector<TileSums> sums(kBlocks, TileSums(frames.size()));
+  tbb::enumerable_thread_specific<TileKernel<Scalar>> kernels(jacobian);  // working memory only
+  const auto sum_tiles = [&](std::size_t block, std::size_t begin, std::size_t end) {
+    TileKernel<Scalar>& kernel = kernels.local();
+    for (std::size_t t = begin; t < end; ++t)
+      if (kernel.evaluate(placed.tiles[t], placed)) sums[block].add(kernel, placed.tiles[t]);
+  };
+  const std::size_t blocks = forBlocksOfTiles(placed.tiles, sum_tiles);
   ReducedSystem total(frames.size());
-  for (const ReducedSystem& sum : sums) total.add(sum);
+  for (std::size_t block = 0; block < blocks; ++block) total.add(sums[block].total());
+  total.system = toGlobal(total.system, frames);
   return total;
+}
+
+template ReducedSystem reduce<float>(const PlacedLevels&, const Frames&, JacobianKind);
+template ReducedSystem reduce<double>(const PlacedLevels&, const Frames&, JacobianKind);
+
+double overlapWeight(const PlacedLevels& placed, int stride) {
+  const auto weightAt = [&placed](const Tile& tile, int a, int b) {
+    double ww = 0, w4 = 0;
+    for (const TileMember& member : tile.members) {
+      const PlacedLevel& submap = placed.submaps[member.submap];
+      const double hits = submap.level().sample(submap.columnOf(a, b), submap.rowOf(a, b)).hits;
+      ww += hits * hits, w4 += hits * hits * hits * hits;
+    }
+    return ww > 0 ? 0.5 * (ww - w4 / ww) : 0;
+  };
+  std::vector<double> sums(kBlocks, 0);
+  forBlocksOfTiles(placed.tiles, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      for (int b = 0; b < kTile; b += stride)
+        for (int a = 0; a < kTile; a += stride)
+          sums[block] += weightAt(placed.tiles[t], placed.tiles[t].a + a, placed.tiles[t].b + b);
+  });
+  double sum = 0;
+  for (const double s : sums) sum += s;
+  return sum * stride * stride;
 }
 
 }  // namespace submap_slam::grid_joining

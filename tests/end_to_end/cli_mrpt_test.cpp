@@ -18,8 +18,9 @@ TEST_F(MrptProgramsTest, RawlogEditListsTheSubmaps) {
   const std::string last_row = succeed({"info", path("s.rawlog")}).out;
   const auto submaps = lines(last_row) - 2;  // without heading and totals
 
-  const Outcome info = runOther("rawlog-edit", {"-i", path("s.rawlog"), "-p",
-                                                SUBMAP_SLAM_BINARY_DIR "/lib/libsubmap-types.so", "--info"});
+  const std::string build_tree = SUBMAP_SLAM_BINARY_DIR;
+  const Outcome info = runOther(
+      "rawlog-edit", {"-i", path("s.rawlog"), "-p", build_tree + "/lib/libsubmap-types.so", "--info"});
   EXPECT_EQ(info.exit_code, 0) << info.err;
   EXPECT_THAT(info.out, HasSubstr("Overall number of objects         : " + std::to_string(submaps) + "\n"));
 }

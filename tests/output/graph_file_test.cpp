@@ -7,7 +7,7 @@
 #include <limits>
 #include <sstream>
 
-#include "../eval/temp_folder.h"
+#include "../support/temp_folder.h"
 #include "sample_results.h"
 
 namespace submap_slam {

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "../eval/temp_folder.h"
+#include "../support/temp_folder.h"
 
 namespace submap_slam {
 

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "../eval/temp_folder.h"
+#include "../support/temp_folder.h"
 #include "sample_results.h"
 
 namespace submap_slam {

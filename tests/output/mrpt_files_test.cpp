@@ -12,7 +12,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "../eval/temp_folder.h"
+#include "../support/temp_folder.h"
 #include "sample_results.h"
 
 namespace submap_slam {

@@ -3,7 +3,7 @@
 #include <submap_slam/core/errors.h>
 #include <submap_slam/output/output_directory.h>
 
-#include "../eval/temp_folder.h"
+#include "../support/temp_folder.h"
 
 namespace submap_slam {
 

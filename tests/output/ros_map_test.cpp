@@ -3,7 +3,7 @@
 #include <mrpt/maps/COccupancyGridMap2D.h>
 #include <submap_slam/output/ros_map.h>
 
-#include "../eval/temp_folder.h"
+#include "../support/temp_folder.h"
 #include "sample_results.h"
 
 namespace submap_slam {

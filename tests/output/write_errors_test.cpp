@@ -10,7 +10,7 @@
 
 #include <functional>
 
-#include "../eval/temp_folder.h"
+#include "../support/temp_folder.h"
 #include "sample_results.h"
 
 namespace submap_slam {

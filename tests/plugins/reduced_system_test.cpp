@@ -20,9 +20,20 @@ const auto kEveryJacobian =
     ::testing::Values(JacobianKind::kPaper, JacobianKind::kVariableProjection, JacobianKind::kSurface);
 
 struct Problem {
+  GridSubmaps submaps;
   EvidenceLevels level;
   Frames frames;
 };
+
+EvidenceLevels finestLevel(const GridSubmaps& submaps, double background = 0) {
+  return buildPyramid(submaps, {0, 1, background}).front();
+}
+
+template <class Scalar = double>
+ReducedSystem reduceAt(const EvidenceLevels& level, const Frames& frames, JacobianKind jacobian,
+                       double angle = kAngle) {
+  return reduce<Scalar>(PlacedLevels(level, frames, angle), frames, jacobian);
+}
 
 /** Four or five submaps that overlap in part; the first and the last hardly do. */
 Problem makeProblem(uint32_t seed, bool rough) {
@@ -36,21 +47,26 @@ Problem makeProblem(uint32_t seed, bool rough) {
     const double k = static_cast<double>(i);
     frames.emplace_back(0.8 * k, 0.3 * std::sin(2.0 * k), 0.5 * k - 0.2);
   }
-  return {buildPyramid(submaps, 0, 1).front(), frames};
+  return {submaps, finestLevel(submaps), frames};
 }
 
 double relativeDifference(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return (a - b).norm() / b.norm();
 }
 
-/** Look-up written independently: four weighted cells, unknown outside. */
-std::pair<double, double> lookUp(const EvidenceLevel& level, double u, double v) {
+/** Look-up written independently: four weighted cells around a point of the local map frame, unknown outside.
+ */
+std::pair<double, double> lookUp(const EvidenceGrid& grid, double x, double y) {
   double l = 0, n = 0;
-  for (int r = 0; r < level.rows(); ++r)
-    for (int c = 0; c < level.columns(); ++c) {
-      const double weight = std::max(0.0, 1 - std::abs(u - c)) * std::max(0.0, 1 - std::abs(v - r));
-      l += weight * static_cast<double>(level.cell(c, r).log_odds);
-      n += weight * static_cast<double>(level.cell(c, r).hits);
+  for (std::size_t r = 0; r < grid.sizeY(); ++r)
+    for (std::size_t c = 0; c < grid.sizeX(); ++c) {
+      const double u = (x - grid.hits.idx2x(static_cast<int>(c))) / grid.resolution();
+      const double v = (y - grid.hits.idx2y(static_cast<int>(r))) / grid.resolution();
+      const double weight = std::max(0.0, 1 - std::abs(u)) * std::max(0.0, 1 - std::abs(v));
+      if (weight == 0) continue;
+      const auto ix = static_cast<unsigned>(c), iy = static_cast<unsigned>(r);
+      l += weight * static_cast<double>(*grid.log_odds.cellByIndex(ix, iy));
+      n += weight * static_cast<double>(*grid.hits.cellByIndex(ix, iy));
     }
   return {l, n};
 }
@@ -66,7 +82,7 @@ TEST(ReducedSystem, CostIsThatOfEquation4AtTheBestMap) {
       std::vector<std::pair<double, double>> seen;
       for (std::size_t i = 0; i < p.frames.size(); ++i) {
         const auto local = p.frames[i].inverseComposePoint({x, y});
-        const auto [l, n] = lookUp(p.level[i], p.level[i].columnOf(local.x), p.level[i].rowOf(local.y));
+        const auto [l, n] = lookUp(p.submaps[i]->evidence, local.x, local.y);
         if (n > 0) seen.emplace_back(l, n);
       }
       if (seen.size() < 2) continue;
@@ -79,11 +95,14 @@ TEST(ReducedSystem, CostIsThatOfEquation4AtTheBestMap) {
         for (std::size_t k = 0; k < i; ++k)
           weight += std::pow(seen[i].second * seen[k].second, 2) / (denominator * n_m * n_m);
     }
-  const ReducedSystem reduced = reduce(p.level, p.frames, JacobianKind::kPaper, kAngle);
+  const ReducedSystem reduced = reduceAt(p.level, p.frames, JacobianKind::kPaper);
   EXPECT_GT(observations, 2000u);
   EXPECT_EQ(reduced.observations, observations);
   EXPECT_NEAR(reduced.cost, cost, 1e-10 * cost);
-  EXPECT_NEAR(reduced.overlap_weight, weight, 1e-10 * weight);
+  const double all = overlapWeight(PlacedLevels(p.level, p.frames, kAngle), 1);
+  EXPECT_NEAR(all, weight, 1e-10 * weight);
+  const double sparse = overlapWeight(PlacedLevels(p.level, p.frames, kAngle));
+  EXPECT_NEAR(sparse, weight, 0.15 * weight) << "a sixteenth of the lattice points stands for all";
 }
 
 class EveryJacobian : public ::testing::TestWithParam<JacobianKind> {};
@@ -92,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(All, EveryJacobian, kEveryJacobian);
 TEST_P(EveryJacobian, StepIsThatOfTheFullSystemWhateverTheMap) {
   for (const uint32_t seed : {1u, 2u, 3u}) {
     const Problem p = makeProblem(seed, true);
-    const ReducedSystem reduced = reduce(p.level, p.frames, GetParam(), kAngle);
+    const ReducedSystem reduced = reduceAt(p.level, p.frames, GetParam());
     const auto held = anchorsOf(reduced.system);
     const PoseSystem nothing(p.frames.size());
     const auto step = solve(reduced.system, held, Eigen::VectorXd::Zero(3 * held.size()));
@@ -114,7 +133,7 @@ TEST_P(EveryJacobian, StepIsThatOfTheFullSystemWhateverTheMap) {
 
 TEST_P(EveryJacobian, PoseTermsEnterAllSolversAlike) {
   const Problem p = makeProblem(4, false);
-  ReducedSystem reduced = reduce(p.level, p.frames, GetParam(), kAngle);
+  ReducedSystem reduced = reduceAt(p.level, p.frames, GetParam());
   const auto held = anchorsOf(reduced.system);
   PoseSystem terms(p.frames.size());
   terms.addBlock(1, 2, Eigen::Vector3d(-3, 2, 1).asDiagonal());
@@ -133,7 +152,7 @@ TEST_P(EveryJacobian, PoseTermsEnterAllSolversAlike) {
 
 TEST_P(EveryJacobian, MatrixIsPositiveSemidefinite) {
   const Problem p = makeProblem(5, true);
-  const Eigen::MatrixXd matrix = reduce(p.level, p.frames, GetParam(), kAngle).system.denseMatrix();
+  const Eigen::MatrixXd matrix = reduceAt(p.level, p.frames, GetParam()).system.denseMatrix();
   EXPECT_EQ((matrix - matrix.transpose()).cwiseAbs().maxCoeff(), 0) << "off-diagonal blocks are stored once";
   for (Eigen::Index i = 0; i < matrix.rows(); i += 3) {
     const Eigen::Matrix3d block = matrix.block<3, 3>(i, i);
@@ -147,12 +166,12 @@ TEST_P(EveryJacobian, SameBitsForAnyNumberOfThreads) {
   const Problem p = makeProblem(3, true);
   const auto with = [&](std::size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    return reduce(p.level, p.frames, GetParam(), kAngle);
+    return reduceAt(p.level, p.frames, GetParam());
   };
   const ReducedSystem one = with(1), two = with(2), again = with(2);
   for (const ReducedSystem& other : {two, again}) {
     EXPECT_EQ(one.cost, other.cost);
-    EXPECT_EQ(one.overlap_weight, other.overlap_weight);
+    EXPECT_EQ(one.observations, other.observations);
     EXPECT_EQ(one.system.denseMatrix(), other.system.denseMatrix());
     EXPECT_EQ(one.system.denseGradient(), other.system.denseGradient());
   }
@@ -161,20 +180,19 @@ TEST_P(EveryJacobian, SameBitsForAnyNumberOfThreads) {
 TEST(ReducedSystem, VariableProjectionIsTheGradientOfTheCost) {
   const Problem p = makeProblem(6, false);
   const Eigen::VectorXd gradient =
-      2 * reduce(p.level, p.frames, JacobianKind::kVariableProjection, kAngle).system.denseGradient();
+      2 * reduceAt(p.level, p.frames, JacobianKind::kVariableProjection).system.denseGradient();
   const double h = 1e-7;
   Eigen::VectorXd differences(gradient.size());
   for (Eigen::Index k = 0; k < gradient.size(); ++k) {
     const auto costAt = [&](double offset) {
       Eigen::VectorXd step = Eigen::VectorXd::Zero(gradient.size());
       step[k] = offset;
-      return reduce(p.level, moved(p.frames, step), JacobianKind::kPaper, kAngle).cost;
+      return reduceAt(p.level, moved(p.frames, step), JacobianKind::kPaper).cost;
     };
     differences[k] = (costAt(h) - costAt(-h)) / (2 * h);
   }
   EXPECT_LT(relativeDifference(gradient, differences), 1e-6);
-  const Eigen::VectorXd paper =
-      2 * reduce(p.level, p.frames, JacobianKind::kPaper, kAngle).system.denseGradient();
+  const Eigen::VectorXd paper = 2 * reduceAt(p.level, p.frames, JacobianKind::kPaper).system.denseGradient();
   EXPECT_GT(relativeDifference(paper, differences), 1e-3) << "the published form leaves the hit counts out";
 }
 
@@ -187,17 +205,59 @@ TEST(ReducedSystem, SurfaceJacobianVanishesInUniformSpace) {
       grid.log_odds.begin()[static_cast<std::ptrdiff_t>(k)] = -2 * grid.hits.data()[k];
   }
   const Frames frames{{0, 0, 0}, {0.4, -0.3, 0.6}};
-  const ReducedSystem reduced =
-      reduce(buildPyramid(submaps, 0, 1).front(), frames, JacobianKind::kSurface, kAngle);
+  const ReducedSystem reduced = reduceAt(finestLevel(submaps), frames, JacobianKind::kSurface);
   EXPECT_GT(reduced.observations, 500u);
   EXPECT_LT(reduced.cost, 1e-20 * reduced.energy);
   EXPECT_LT(reduced.system.denseMatrix().cwiseAbs().maxCoeff(), 1e-20 * reduced.energy);
+
+  const double background = backgroundOf(submaps);
+  EXPECT_FLOAT_EQ(static_cast<float>(background), -2.0f);
+  const ReducedSystem nothing = reduceAt(finestLevel(submaps, background), frames, JacobianKind::kSurface);
+  EXPECT_EQ(nothing.cells, 0u) << "uniform space needs no work when the background is taken off";
+  EXPECT_TRUE(nothing.system.blocks.empty());
+}
+
+/** L ← L − b N leaves cost and normal equations as they are, with the Jacobians that know of N. */
+TEST(ReducedSystem, BackgroundChangesNothing) {
+  GridSubmaps submaps;
+  const Frames frames{{0, 0, 0}, {1.5, 0.6, 0.7}, {-1.2, 0.9, -0.4}};
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    submaps.push_back(testing::renderSubmap(testing::room(), frames[i], 4, 0.1));
+    EvidenceGrid& grid = submaps.back()->evidence;  // free space at exactly -1 per hit
+    for (std::size_t k = 0; k < grid.cells(); ++k) {
+      float& log_odds = grid.log_odds.begin()[static_cast<std::ptrdiff_t>(k)];
+      log_odds = std::max(log_odds, -0.9f * grid.hits.data()[k]) - 0.1f * grid.hits.data()[k];
+    }
+  }
+  const double background = backgroundOf(submaps);
+  EXPECT_NEAR(background, -1, 1e-5);
+  const Frames off{{0, 0, 0}, {1.55, 0.57, 0.71}, {-1.18, 0.96, -0.42}};
+  for (const JacobianKind jacobian : {JacobianKind::kVariableProjection, JacobianKind::kSurface}) {
+    const ReducedSystem plain = reduceAt(finestLevel(submaps), off, jacobian);
+    const ReducedSystem above = reduceAt(finestLevel(submaps, background), off, jacobian);
+    EXPECT_LT(above.cells, plain.cells / 2) << "free space is left out";
+    EXPECT_NEAR(above.cost, plain.cost, 1e-4 * plain.cost);
+    const Eigen::MatrixXd a = above.system.denseMatrix(), b = plain.system.denseMatrix();
+    EXPECT_LT((a - b).norm(), 1e-3 * b.norm());
+    EXPECT_LT(relativeDifference(above.system.denseGradient(), plain.system.denseGradient()), 1e-3);
+  }
+}
+
+/** Look-ups are exact to about 1e-6 of a cell and sums over the 256 cells of a tile to about 1e-6. */
+TEST_P(EveryJacobian, SinglePrecisionAgreesWithDouble) {
+  const Problem p = makeProblem(4, false);
+  const ReducedSystem single = reduceAt<float>(p.level, p.frames, GetParam());
+  const ReducedSystem twice = reduceAt(p.level, p.frames, GetParam());
+  EXPECT_NEAR(single.cost, twice.cost, 1e-5 * twice.cost);
+  const Eigen::MatrixXd a = single.system.denseMatrix(), b = twice.system.denseMatrix();
+  EXPECT_LT((a - b).norm(), 1e-4 * b.norm());
+  EXPECT_LT(relativeDifference(single.system.denseGradient(), twice.system.denseGradient()), 1e-4);
 }
 
 /** All frames moved rigidly, so that the lattice falls on the same points of every submap again. */
 TEST(ReducedSystem, RigidMotionOfEverythingChangesNothing) {
   const Problem p = makeProblem(7, true);
-  const ReducedSystem here = reduce(p.level, p.frames, JacobianKind::kPaper, kAngle);
+  const ReducedSystem here = reduceAt(p.level, p.frames, JacobianKind::kPaper);
   const double a = 37, b = -12, turn = 0.83;
   const TPose2D shift(0.1 * (std::cos(kAngle) * a - std::sin(kAngle) * b),
                       0.1 * (std::sin(kAngle) * a + std::cos(kAngle) * b), 0);
@@ -206,17 +266,17 @@ TEST(ReducedSystem, RigidMotionOfEverythingChangesNothing) {
     shifted.push_back(shift + frame);
     turned.push_back(TPose2D(0, 0, turn) + frame);
   }
-  const ReducedSystem there = reduce(p.level, shifted, JacobianKind::kPaper, kAngle);
-  const ReducedSystem round = reduce(p.level, turned, JacobianKind::kPaper, kAngle + turn);
+  const ReducedSystem there = reduceAt(p.level, shifted, JacobianKind::kPaper);
+  const ReducedSystem round = reduceAt(p.level, turned, JacobianKind::kPaper, kAngle + turn);
   EXPECT_NEAR(there.cost, here.cost, 1e-9 * here.cost);
   EXPECT_NEAR(round.cost, here.cost, 1e-9 * here.cost);
 }
 
 TEST(ReducedSystem, CellsOfOneSubmapCountForNothing) {
   const EvidenceLevels level =
-      buildPyramid({testing::roughSubmap(1, 3, 2, 0.1), testing::roughSubmap(2, 3, 2, 0.1)}, 0, 1).front();
-  const ReducedSystem alone = reduce({level[0]}, {{0.3, 0.2, 0.1}}, JacobianKind::kPaper, kAngle);
-  const ReducedSystem apart = reduce(level, {{0, 0, 0}, {3.5, 2.5, 0.3}}, JacobianKind::kPaper, kAngle);
+      finestLevel({testing::roughSubmap(1, 3, 2, 0.1), testing::roughSubmap(2, 3, 2, 0.1)});
+  const ReducedSystem alone = reduceAt({level[0]}, {{0.3, 0.2, 0.1}}, JacobianKind::kPaper);
+  const ReducedSystem apart = reduceAt(level, {{0, 0, 0}, {3.5, 2.5, 0.3}}, JacobianKind::kPaper);
   for (const ReducedSystem& none : {alone, apart}) {
     EXPECT_EQ(none.observations, 0u);
     EXPECT_EQ(none.cost, 0);
@@ -228,11 +288,11 @@ TEST(ReducedSystem, SubmapWithoutEvidenceIsHarmless) {
   GridSubmaps submaps{testing::roughSubmap(1, 3, 2, 0.1), GridSubmap::Create(),
                       testing::roughSubmap(2, 3, 2, 0.1)};
   submaps[1]->evidence = EvidenceGrid(-1, 1, -1, 1, 0.1);
-  const EvidenceLevels all = buildPyramid(submaps, 0, 1).front();
+  const EvidenceLevels all = finestLevel(submaps);
   const EvidenceLevels two{all[0], all[2]};
   const TPose2D first(0, 0, 0), last(0.5, 0.4, 0.3);
-  const ReducedSystem with = reduce(all, {first, {0.1, 0, 0}, last}, JacobianKind::kPaper, kAngle);
-  const ReducedSystem without = reduce(two, {first, last}, JacobianKind::kPaper, kAngle);
+  const ReducedSystem with = reduceAt(all, {first, {0.1, 0, 0}, last}, JacobianKind::kPaper);
+  const ReducedSystem without = reduceAt(two, {first, last}, JacobianKind::kPaper);
   EXPECT_GT(without.observations, 0u);
   EXPECT_EQ(with.observations, without.observations);
   EXPECT_EQ(with.cost, without.cost);
@@ -251,7 +311,7 @@ TEST(Anchors, OneForEachConnectedGroup) {
 
 TEST(PoseSystem, MarginalCovarianceIsTheBlockOfTheInverse) {
   const Problem p = makeProblem(8, true);
-  const PoseSystem system = reduce(p.level, p.frames, JacobianKind::kVariableProjection, kAngle).system;
+  const PoseSystem system = reduceAt(p.level, p.frames, JacobianKind::kVariableProjection).system;
   const auto covariances =
       marginalCovariances(system, anchorsOf(system), Eigen::VectorXd::Zero(3 * p.frames.size()));
   ASSERT_TRUE(covariances);

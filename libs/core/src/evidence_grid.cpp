@@ -13,6 +13,12 @@ using Grid = mrpt::containers::CDynamicGrid<float>;
 /** Grids beyond this are taken for a damaged file. */
 constexpr uint32_t kMaxSide = 1u << 16;
 
+/** A limit this close to a multiple of the resolution (in cells) is that multiple. */
+constexpr double kSameLimit = 1e-6;
+
+double roundedDown(double limit, double r) { return std::floor(limit / r + kSameLimit) * r; }
+double roundedUp(double limit, double r) { return std::ceil(limit / r - kSameLimit) * r; }
+
 struct CellBox {
   std::size_t x0, x1, y0, y1;  // inclusive
 };
@@ -54,7 +60,9 @@ void readCells(mrpt::serialization::CArchive& in, Grid& grid) {
 EvidenceGrid::EvidenceGrid() : EvidenceGrid(0, 1, 0, 1, 1) {}
 
 EvidenceGrid::EvidenceGrid(double x_min, double x_max, double y_min, double y_max, double resolution)
-    : log_odds(x_min, x_max, y_min, y_max, resolution), hits(x_min, x_max, y_min, y_max, resolution) {
+    : log_odds(roundedDown(x_min, resolution), roundedUp(x_max, resolution), roundedDown(y_min, resolution),
+               roundedUp(y_max, resolution), resolution),
+      hits(log_odds.getXMin(), log_odds.getXMax(), log_odds.getYMin(), log_odds.getYMax(), resolution) {
   log_odds.fill(0.0f);
   hits.fill(0.0f);
 }

@@ -76,7 +76,7 @@ uint8_t GridSubmap::serializeGetVersion() const { return 0; }
 
 void GridSubmap::serializeTo(CArchive& out) const {
   out << sensorLabel << timestamp << id << first_frame << end_frame;
-  evidence.writeTo(out);
+  LoadedEvidence(*this)->writeTo(out);
   out << static_cast<uint32_t>(nodes.size());
   for (const auto& node : nodes) writeNode(out, node);
   out << end_pose << static_cast<uint8_t>(has_successor);
@@ -86,6 +86,7 @@ void GridSubmap::serializeTo(CArchive& out) const {
 void GridSubmap::serializeFrom(CArchive& in, uint8_t version) {
   if (version != 0) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
   in >> sensorLabel >> timestamp >> id >> first_frame >> end_frame;
+  packed_.reset();
   evidence = EvidenceGrid::readFrom(in);
   nodes.clear();
   for (uint32_t n = readCount(in); n > 0; --n) nodes.push_back(readNode(in));
@@ -94,8 +95,21 @@ void GridSubmap::serializeFrom(CArchive& in, uint8_t version) {
   statistics = readStatistics(in);
 }
 
+void GridSubmap::load() const {
+  if (!packed_) return;
+  evidence = packed_->unpacked();
+  packed_.reset();
+}
+
+void GridSubmap::unload() const {
+  if (packed_) return;
+  packed_ = std::make_shared<const PackedEvidence>(evidence);
+  evidence = EvidenceGrid();
+}
+
 double GridSubmap::radius() const {
-  const auto& g = evidence.hits;
+  const LoadedEvidence loaded(*this);
+  const auto& g = loaded->hits;
   double r2 = 0;
   for (std::size_t cy = 0; cy < g.getSizeY(); ++cy)
     for (std::size_t cx = 0; cx < g.getSizeX(); ++cx)
@@ -126,6 +140,7 @@ void GridSubmap::setSensorPose(const mrpt::poses::CPose3D&) {
 
 void GridSubmap::getDescriptionAsText(std::ostream& out) const {
   CObservation::getDescriptionAsText(out);
+  const LoadedEvidence grid(*this);
   const auto end = end_pose.mean;
   out << fmt::format(
       "\nGrid submap {}\n"
@@ -137,8 +152,8 @@ void GridSubmap::getDescriptionAsText(std::ostream& out) const {
       "  match score       : mean {:.3f}, min {:.3f}, max {:.3f}\n"
       "  filter            : {} rescues, {} ambiguous scans, at most {} particles, {} resamplings\n"
       "  closed because    : {}\n",
-      id, first_frame, end_frame, nodes.size(), keyNodes(), pathLength(), evidence.sizeX(), evidence.sizeY(),
-      evidence.resolution(), evidence.observedCells(), end.x(), end.y(), mrpt::RAD2DEG(end.phi()),
+      id, first_frame, end_frame, nodes.size(), keyNodes(), pathLength(), grid->sizeX(), grid->sizeY(),
+      grid->resolution(), grid->observedCells(), end.x(), end.y(), mrpt::RAD2DEG(end.phi()),
       std::sqrt(end_pose.cov(0, 0)), std::sqrt(end_pose.cov(1, 1)),
       mrpt::RAD2DEG(std::sqrt(end_pose.cov(2, 2))), statistics.match_score_mean, statistics.match_score_min,
       statistics.match_score_max, statistics.rescues, statistics.ambiguous_scans, statistics.max_particles,
@@ -150,14 +165,15 @@ std::string GridSubmap::exportTxtHeader() const {
 }
 
 std::string GridSubmap::exportTxtDataRow() const {
+  const LoadedEvidence grid(*this);
   return fmt::format("{} {} {} {} {} {:.4f} {} {:.9g} {:.9g} {:.9g}", id, first_frame, end_frame,
-                     nodes.size(), keyNodes(), pathLength(), evidence.observedCells(), end_pose.mean.x(),
+                     nodes.size(), keyNodes(), pathLength(), grid->observedCells(), end_pose.mean.x(),
                      end_pose.mean.y(), end_pose.mean.phi());
 }
 
 void GridSubmap::getVisualizationInto(mrpt::opengl::CSetOfObjects& out) const {
   out.clear();
-  evidence.toOccupancyGrid().getVisualizationInto(out);
+  LoadedEvidence(*this)->toOccupancyGrid().getVisualizationInto(out);
   auto path = mrpt::opengl::CSetOfLines::Create();
   path->setColor_u8(0x20, 0x60, 0xd0);
   path->setLineWidth(2);

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <stdexcept>
+#include <utility>
 
 namespace submap_slam {
 namespace {
@@ -16,43 +18,33 @@ void requireOneFrameEach(const GridSubmaps& submaps, const std::vector<CPosePDFG
   if (submaps.size() != frames.size()) throw std::invalid_argument("one frame is needed for each submap");
 }
 
-/** Half-open rectangle of cell indices. */
-struct CellBox {
-  int x0 = 0, x1 = 0, y0 = 0, y1 = 0;
-  bool empty() const { return x0 >= x1; }
+/** Σ N_i L_i, Σ N_i², Σ N_i of one cell. */
+struct FusionSums {
+  double nl = 0, nn = 0, n = 0;
 };
 
-CellBox observedBox(const EvidenceGrid& grid) {
-  const int nx = static_cast<int>(grid.sizeX()), ny = static_cast<int>(grid.sizeY());
-  CellBox box{nx, 0, ny, 0};
-  auto cell = grid.hits.begin();
-  for (int y = 0; y < ny; ++y)
-    for (int x = 0; x < nx; ++x, ++cell) {
-      if (*cell <= 0) continue;
-      box = {std::min(box.x0, x), std::max(box.x1, x + 1), std::min(box.y0, y), std::max(box.y1, y + 1)};
-    }
-  return box;
+/** The packed evidence of a submap, which stays as it is: loaded or not. */
+std::shared_ptr<const PackedEvidence> packed(const GridSubmap& submap) {
+  if (const auto kept = submap.packedEvidence()) return kept;
+  return std::make_shared<const PackedEvidence>(submap.evidence);
 }
 
 /** A submap in the global map frame, ready for bilinear look-ups. */
 class PlacedEvidence {
  public:
-  PlacedEvidence(const EvidenceGrid& grid, const TPose2D& T_w_s)
-      : grid_(grid),
-        T_w_s_(T_w_s),
-        cos_(std::cos(T_w_s.phi)),
-        sin_(std::sin(T_w_s.phi)),
-        box_(observedBox(grid)) {}
+  PlacedEvidence(std::shared_ptr<const PackedEvidence> evidence, const TPose2D& T_w_s)
+      : evidence_(std::move(evidence)), T_w_s_(T_w_s), cos_(std::cos(T_w_s.phi)), sin_(std::sin(T_w_s.phi)) {}
 
-  bool empty() const { return box_.empty(); }
+  bool empty() const { return evidence_->empty(); }
+  double resolution() const { return evidence_->resolution(); }
 
   /** Grows [x_min, x_max] × [y_min, y_max] (m, global map frame) by everything that interpolation reaches. */
   void extend(double& x_min, double& x_max, double& y_min, double& y_max) const {
-    for (const double u : {box_.x0 - 1.0, box_.x1 * 1.0})
-      for (const double v : {box_.y0 - 1.0, box_.y1 * 1.0}) {
-        const double r = grid_.resolution();
-        const mrpt::math::TPoint2D corner = T_w_s_.composePoint(
-            {grid_.log_odds.getXMin() + (u + 0.5) * r, grid_.log_odds.getYMin() + (v + 0.5) * r});
+    for (const double u : {-1.0, evidence_->sizeX() * 1.0})
+      for (const double v : {-1.0, evidence_->sizeY() * 1.0}) {
+        const double r = evidence_->resolution();
+        const mrpt::math::TPoint2D corner =
+            T_w_s_.composePoint({evidence_->xMin() + (u + 0.5) * r, evidence_->yMin() + (v + 0.5) * r});
         x_min = std::min(x_min, corner.x), x_max = std::max(x_max, corner.x);
         y_min = std::min(y_min, corner.y), y_max = std::max(y_max, corner.y);
       }
@@ -60,37 +52,38 @@ class PlacedEvidence {
 
   /** Index coordinates (cell centres are integers) of a global point (m). */
   mrpt::math::TPoint2D toIndex(double x, double y) const {
-    const double dx = x - T_w_s_.x, dy = y - T_w_s_.y, r = grid_.resolution();
-    return {(cos_ * dx + sin_ * dy - grid_.log_odds.getXMin()) / r - 0.5,
-            (-sin_ * dx + cos_ * dy - grid_.log_odds.getYMin()) / r - 0.5};
+    const double dx = x - T_w_s_.x, dy = y - T_w_s_.y, r = evidence_->resolution();
+    return {(cos_ * dx + sin_ * dy - evidence_->xMin()) / r - 0.5,
+            (-sin_ * dx + cos_ * dy - evidence_->yMin()) / r - 0.5};
   }
 
-  /** Those k in [0, count) for which start + k·step can reach an observed cell, as a half-open interval. */
+  /** Those k in [0, count) for which start + k·step can reach a cell, as a half-open interval. */
   std::pair<int, int> reach(const mrpt::math::TPoint2D& start, const mrpt::math::TPoint2D& step,
                             int count) const {
     double from = 0, to = count - 1;
-    clip(start.x, step.x, box_.x0 - 1, box_.x1, from, to);
-    clip(start.y, step.y, box_.y0 - 1, box_.y1, from, to);
+    clip(start.x, step.x, -1, evidence_->sizeX(), from, to);
+    clip(start.y, step.y, -1, evidence_->sizeY(), from, to);
     return {static_cast<int>(std::ceil(from)), static_cast<int>(std::floor(to)) + 1};
   }
 
-  /** Bilinear log-odds sum and hit count; cells outside the grid count as unknown. */
-  std::pair<double, double> at(const mrpt::math::TPoint2D& index) const {
+  /** Adds the bilinear log-odds sum and hit count to the sums of a cell of the map; cells outside count as
+   * unknown. */
+  void addTo(FusionSums& sums, const mrpt::math::TPoint2D& index) const {
     const double fx = std::floor(index.x), fy = std::floor(index.y);
     const int cx = static_cast<int>(fx), cy = static_cast<int>(fy);
+    if (!evidence_->mayReach(cx, cy)) return;
     const double a = index.x - fx, b = index.y - fy;
     double log_odds = 0, hits = 0;
     const auto add = [&](int x, int y, double weight) {
-      if (x < box_.x0 || x >= box_.x1 || y < box_.y0 || y >= box_.y1) return;
-      const std::size_t cell = static_cast<std::size_t>(y) * grid_.sizeX() + static_cast<std::size_t>(x);
-      log_odds += weight * static_cast<double>(grid_.log_odds.data()[cell]);
-      hits += weight * static_cast<double>(grid_.hits.data()[cell]);
+      const auto [l, n] = evidence_->cell(x, y);
+      log_odds += weight * static_cast<double>(l);
+      hits += weight * static_cast<double>(n);
     };
     add(cx, cy, (1 - a) * (1 - b));
     add(cx + 1, cy, a * (1 - b));
     add(cx, cy + 1, (1 - a) * b);
     add(cx + 1, cy + 1, a * b);
-    return {log_odds, hits};
+    sums.nl += hits * log_odds, sums.nn += hits * hits, sums.n += hits;
   }
 
  private:
@@ -104,19 +97,13 @@ class PlacedEvidence {
     to = std::min(to, std::max(a, b));
   }
 
-  const EvidenceGrid& grid_;
+  std::shared_ptr<const PackedEvidence> evidence_;
   TPose2D T_w_s_;
   double cos_, sin_;
-  CellBox box_;
 };
 
 /** Fewer hits than this come from rounding where a look-up falls on the centre of a neighbouring cell. */
 constexpr double kLeastHits = 1e-6;
-
-/** Σ N_i L_i, Σ N_i², Σ N_i of one cell. */
-struct FusionSums {
-  double nl = 0, nn = 0, n = 0;
-};
 
 void fuseRow(const std::vector<PlacedEvidence>& submaps, int row, EvidenceGrid& map) {
   const int columns = static_cast<int>(map.sizeX());
@@ -125,11 +112,7 @@ void fuseRow(const std::vector<PlacedEvidence>& submaps, int row, EvidenceGrid& 
   for (const PlacedEvidence& submap : submaps) {
     const auto start = submap.toIndex(x0, y0), step = submap.toIndex(x0 + r, y0) - start;
     const auto [from, to] = submap.reach(start, step, columns);
-    for (int k = from; k < to; ++k) {
-      const auto [log_odds, hits] = submap.at(start + step * k);
-      FusionSums& s = sums[static_cast<std::size_t>(k)];
-      s.nl += hits * log_odds, s.nn += hits * hits, s.n += hits;
-    }
+    for (int k = from; k < to; ++k) submap.addTo(sums[static_cast<std::size_t>(k)], start + step * k);
   }
   const auto offset = static_cast<std::ptrdiff_t>(row) * columns;
   for (int k = 0; k < columns; ++k) {
@@ -195,11 +178,11 @@ EvidenceGrid fuseEvidence(const GridSubmaps& submaps, const std::vector<CPosePDF
   double x_min = kInfinity, x_max = -kInfinity, y_min = kInfinity, y_max = -kInfinity, finest = kInfinity;
   std::vector<PlacedEvidence> placed;
   for (std::size_t k = 0; k < submaps.size(); ++k) {
-    const PlacedEvidence submap(submaps[k]->evidence, frames[k].mean.asTPose());
+    PlacedEvidence submap(packed(*submaps[k]), frames[k].mean.asTPose());
     if (submap.empty()) continue;
     submap.extend(x_min, x_max, y_min, y_max);
-    finest = std::min(finest, submaps[k]->evidence.resolution());
-    placed.push_back(submap);
+    finest = std::min(finest, submap.resolution());
+    placed.push_back(std::move(submap));
   }
   if (placed.empty()) return {};
 

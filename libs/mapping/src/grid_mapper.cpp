@@ -2,7 +2,7 @@
 
 #include <mrpt/math/wrap2pi.h>
 #include <mrpt/poses/CPose2D.h>
-#include <Eigen/LU>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -32,11 +32,44 @@ struct Span {
   bool has_successor = false;
 };
 
+/** First of the frames that prepare the matching map of a submap starting at `first`, be it in the middle of
+ * a stretch. */
+std::size_t warmUpBegin(const Stretch& stretch, std::size_t first) {
+  constexpr std::size_t kLeast = 20;
+  return first - std::min(first, std::max(stretch.warm_up, kLeast));
+}
+
+/** Watches the filter and tells when a submap should end before its stretch does. */
+class ClosingRules {
+ public:
+  /** @param adaptive the number of particles says how undecided the filter is */
+  ClosingRules(const ClosingParams& params, bool adaptive) : params_(params), adaptive_(adaptive) {}
+
+  /** Call after each step. Returns the rule that closes the submap; empty: go on. */
+  std::string check(const ParticleFilter& filter, const DriftCovariance& drift) {
+    undecided_scans_ = filter.size() > 1 ? undecided_scans_ + 1 : 0;
+    const auto inliers = static_cast<double>(filter.best().path.back().inlier_share);
+    lost_scans_ = inliers < params_.lost_below ? lost_scans_ + 1 : 0;
+    if (lost()) return "match lost";
+    if (adaptive_ && undecided_scans_ >= params_.undecided_scans) return "hypotheses undecided";
+    if (drift.sigmaXy() > params_.max_sigma_xy || drift.sigmaPhi() > params_.max_sigma_phi)
+      return "pose uncertain";
+    return {};
+  }
+
+  bool lost() const { return lost_scans_ >= params_.lost_scans; }
+
+ private:
+  ClosingParams params_;
+  bool adaptive_;
+  int lost_scans_ = 0, undecided_scans_ = 0;
+};
+
 /** What the filter made of a span. */
 struct Filtered {
   Particle particle;
   SubmapStatistics statistics;
-  std::size_t processed = 0;  ///< frames from Span::warm_up on
+  bool lost = false;  ///< the last scans could not be matched
 };
 
 /** Builds one submap; lives as long as that takes. */
@@ -62,8 +95,8 @@ class SubmapBuild {
   std::vector<TPose2D> refine(const Span& span, Filtered& filtered) const;
   GridSubmap::Ptr assemble(const Span& span, const Filtered& filtered,
                            const std::vector<TPose2D>& poses) const;
-  mrpt::math::CMatrixDouble33 endCovariance(const Span& span, const Filtered& filtered,
-                                            const std::vector<TPose2D>& poses) const;
+  void advance(DriftCovariance& drift, const PathNode& before, const PathNode& node) const;
+  mrpt::math::CMatrixDouble33 endCovariance(const Span& span, const Filtered& filtered) const;
   std::size_t lastFrame(const Span& span) const { return span.has_successor ? span.end : span.end - 1; }
 
   const GridMapperParams& params_;
@@ -75,28 +108,26 @@ class SubmapBuild {
 
 Filtered SubmapBuild::filter(Span& span) const {
   ParticleFilter filter(params_.filter, streamSeed(seed_, frames_[span.first].index));
+  ClosingRules rules(params_.closing, params_.filter.fixed_particles == 0);
+  DriftCovariance drift(params_.drift);
   SubmapStatistics statistics;
   statistics.closed_because = span.has_successor ? "stretch ended" : "log ended";
-  int lost = 0, undecided = 0;
   for (std::size_t i = span.warm_up; i <= lastFrame(span); ++i) {
     filter.step(scans_[i], i > span.warm_up ? incrementBetween(frames_[i - 1], frames_[i]) : std::nullopt);
     statistics.max_particles = std::max(statistics.max_particles, static_cast<uint32_t>(filter.size()));
     if (filter.size() > 1) ++statistics.ambiguous_scans;
-    undecided = filter.size() > 1 ? undecided + 1 : 0;
-    lost = static_cast<double>(filter.best().path.back().inlier_share) < params_.closing.lost_below ? lost + 1
-                                                                                                    : 0;
-    const bool is_lost = lost >= params_.closing.lost_scans;
-    const bool is_undecided =
-        params_.filter.fixed_particles == 0 && undecided >= params_.closing.undecided_scans;
-    if ((is_lost || is_undecided) && i > span.first && i < lastFrame(span)) {
-      statistics.closed_because = is_lost ? "match lost" : "hypotheses undecided";
-      span.end = i;
-      span.has_successor = true;
-    }
+    if (i <= span.first || i == lastFrame(span)) continue;
+    const auto& path = filter.best().path;
+    advance(drift, path[path.size() - 2], path.back());
+    const std::string reason = rules.check(filter, drift);
+    if (reason.empty()) continue;
+    statistics.closed_because = reason;
+    span.end = i;
+    span.has_successor = true;
   }
   statistics.rescues = filter.rescues();
   statistics.resamplings = filter.resamplings();
-  return {filter.best(), statistics, lastFrame(span) + 1 - span.warm_up};
+  return {filter.best(), statistics, rules.lost()};
 }
 
 std::vector<TPose2D> SubmapBuild::refine(const Span& span, Filtered& filtered) const {
@@ -108,6 +139,7 @@ std::vector<TPose2D> SubmapBuild::refine(const Span& span, Filtered& filtered) c
     if (params_.refine && !scans_[i].points.empty()) {
       const MatchResult match = matcher_.match(filtered.particle.map, scans_[i], {node.pose, information});
       node.pose = match.pose;
+      node.information = match.information;
       node.inlier_share = static_cast<float>(match.inlier_share);
     }
     poses.push_back(node.pose);
@@ -118,30 +150,28 @@ std::vector<TPose2D> SubmapBuild::refine(const Span& span, Filtered& filtered) c
   return poses;
 }
 
-mrpt::math::CMatrixDouble33 SubmapBuild::endCovariance(const Span& span, const Filtered& filtered,
-                                                       const std::vector<TPose2D>& poses) const {
-  const TPose2D& end = poses.back();
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  double path = 0;
-  for (std::size_t i = span.first + 1; i <= lastFrame(span); ++i) {
-    const PathNode& node = filtered.particle.path[i - span.warm_up];
-    const TPose2D &before = poses[i - span.first - 1], &here = poses[i - span.first];
-    path += std::hypot(here.x - before.x, here.y - before.y);
-    if (!node.key) continue;
-    const auto evaluation = matcher_.evaluate(filtered.particle.map, scans_[i], node.pose);
-    const Eigen::Matrix3d prior = ParticleFilter::motionInformation(params_.filter.motion, here - before);
-    const Eigen::Matrix3d covariance = (evaluation.hessian + prior).inverse();
-    // A small turn at `here` moves the end by the lever arm.
-    Eigen::Matrix3d J = Eigen::Matrix3d::Identity();
-    J(0, 2) = -(end.y - here.y);
-    J(1, 2) = end.x - here.x;
-    sum += J * covariance * J.transpose();
-  }
-  const double k = params_.drift.inflation * params_.drift.inflation;
-  const double xy = params_.drift.sigma_xy_per_m, phi = params_.drift.sigma_phi_per_m;
-  const Eigen::Vector3d floor = Eigen::Vector3d(xy * xy, xy * xy, phi * phi) * std::max(path, 0.1);
+void SubmapBuild::advance(DriftCovariance& drift, const PathNode& before, const PathNode& node) const {
+  drift.move(before.pose, node.pose);
+  if (!node.key) return;
+  const TPose2D step = node.pose - before.pose;
+  drift.addKeyScan(node.information + ParticleFilter::motionInformation(params_.filter.motion, step));
+}
+
+mrpt::math::CMatrixDouble33 SubmapBuild::endCovariance(const Span& span, const Filtered& filtered) const {
+  const auto& path = filtered.particle.path;
+  DriftCovariance drift(params_.drift);
+  for (std::size_t i = span.first + 1; i <= lastFrame(span); ++i)
+    advance(drift, path[i - 1 - span.warm_up], path[i - span.warm_up]);
+  // The path is in the filter's frame, which the warm-up began; turn the axes into the submap's.
+  const double heading = path[span.first - span.warm_up].pose.phi;
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  R.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-heading).toRotationMatrix();
   mrpt::math::CMatrixDouble33 out;
-  out.asEigen() = k * sum + Eigen::Matrix3d(floor.asDiagonal());
+  out.asEigen() = R * drift.covariance() * R.transpose();
+  if (filtered.lost) {  // nothing is known of where the next submap starts but what odometry says
+    const double xy = params_.closing.max_sigma_xy, phi = params_.closing.max_sigma_phi;
+    out.asEigen().diagonal() += Eigen::Vector3d(xy * xy, xy * xy, phi * phi);
+  }
   return out;
 }
 
@@ -172,7 +202,7 @@ GridSubmap::Ptr SubmapBuild::assemble(const Span& span, const Filtered& filtered
   submap->statistics.match_score_mean =
       static_cast<float>(score_sum / static_cast<double>(span.end - span.first));
   submap->end_pose.mean = mrpt::poses::CPose2D(poses.back());
-  submap->end_pose.cov = endCovariance(span, filtered, poses);
+  submap->end_pose.cov = endCovariance(span, filtered);
   submap->evidence = renderEvidence(key_scans, params_.evidence);
   return submap;
 }
@@ -191,9 +221,7 @@ std::vector<GridSubmap::Ptr> RbpfGridMapper::map(const Stretch& stretch) const {
   std::vector<GridSubmap::Ptr> submaps;
   const std::size_t end = stretch.warm_up + stretch.ownFrames();
   for (std::size_t first = stretch.warm_up; first < end;) {
-    const std::size_t warm_up = first > stretch.warm_up ? first - std::min(first, stretch.warm_up) : 0;
-    Span span{submaps.empty() ? 0 : std::max(warm_up, first - std::min<std::size_t>(first, 20)), first, end,
-              !stretch.last};
+    Span span{warmUpBegin(stretch, first), first, end, !stretch.last};
     submaps.push_back(build.run(span));
     first = span.end;
   }

@@ -69,8 +69,8 @@ void describe(ParameterTable& table, ClosingParams& p) {
 }
 
 void describe(ParameterTable& table, DriftParams& p) {
-  table.add("inflation", p.inflation, "", kPositive,
-            "Factor on the standard deviations that the matches' information gives");
+  table.add("match_scale", p.match_scale, "", kPositive,
+            "Share of the standard deviation that a match's information gives which each key scan adds");
   table.add("sigma_xy_per_m", p.sigma_xy_per_m, "m/√m", kNonNegative,
             "Least standard deviation of the end position");
   table.add("sigma_phi_per_m", p.sigma_phi_per_m, "rad/√m", kNonNegative,

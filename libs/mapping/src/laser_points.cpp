@@ -13,24 +13,32 @@ using mrpt::obs::CObservation2DRangeScan;
 constexpr float kMaxGap = 0.5f;
 /** Both neighbours' directions must agree within this cosine for a corner not to blur the normal. */
 constexpr float kMinCosine = 0.85f;
+/** Two tangents closer than this cosine are one straight line. */
+constexpr float kStraight = 0.995f;
 
-struct Direction {
+/** Direction from one endpoint to the next. */
+struct Tangent {
   float x = 0, y = 0;
-  bool valid = false;
+  bool near = false;   ///< close enough to lie on one surface
+  bool valid = false;  ///< lies along a surface
 };
 
-Direction between(const LaserPoint& a, const LaserPoint& b) {
+Tangent between(const LaserPoint& a, const LaserPoint& b) {
   const float dx = b.x - a.x, dy = b.y - a.y;
   const float length = std::hypot(dx, dy);
-  if (length < 1e-4f || length > kMaxGap) return {};
-  return {dx / length, dy / length, true};
+  if (length < 1e-4f) return {};
+  const bool near = length <= kMaxGap;
+  return {dx / length, dy / length, near, near};
 }
 
+float cosine(const Tangent& a, const Tangent& b) { return a.x * b.x + a.y * b.y; }
+
 /** Double-angle normal from the tangents to the previous and the next endpoint. */
-void setNormal(LaserPoint& p, const Direction& before, const Direction& after) {
+void setNormal(LaserPoint& p, const Tangent& before, const Tangent& after) {
   if (!before.valid && !after.valid) return;
-  if (before.valid && after.valid && before.x * after.x + before.y * after.y < kMinCosine) return;
-  const float tx = before.x + after.x, ty = before.y + after.y;
+  if (before.valid && after.valid && cosine(before, after) < kMinCosine) return;
+  const float tx = (before.valid ? before.x : 0) + (after.valid ? after.x : 0);
+  const float ty = (before.valid ? before.y : 0) + (after.valid ? after.y : 0);
   const float norm2 = tx * tx + ty * ty;
   // Normal (−ty, tx): cos 2α = (ty² − tx²)/|t|², sin 2α = −2 tx ty/|t|².
   p.normal_cos2 = (ty * ty - tx * tx) / norm2;
@@ -38,12 +46,19 @@ void setNormal(LaserPoint& p, const Direction& before, const Direction& after) {
 }
 
 void setNormals(LaserPoints& out, const LaserSweep& sweep) {
-  Direction before;
-  for (std::size_t i = sweep.begin; i < sweep.end; ++i) {
-    const Direction after = i + 1 < sweep.end ? between(out.points[i], out.points[i + 1]) : Direction{};
-    setNormal(out.points[i], before, after);
-    before = after;
+  if (sweep.end - sweep.begin < 2) return;
+  // Tangent k leads to endpoint begin + k; the first and the last lead nowhere.
+  std::vector<Tangent> tangents(sweep.end - sweep.begin + 1);
+  for (std::size_t k = 1; k + 1 < tangents.size(); ++k)
+    tangents[k] = between(out.points[sweep.begin + k - 1], out.points[sweep.begin + k]);
+  // Endpoints far apart lie on one surface if the tangent next to theirs goes on in the same direction: a
+  // wall seen at a grazing angle.
+  for (std::size_t k = 1; k + 1 < tangents.size(); ++k) {
+    Tangent& t = tangents[k];
+    t.valid = t.near || cosine(t, tangents[k - 1]) > kStraight || cosine(t, tangents[k + 1]) > kStraight;
   }
+  for (std::size_t i = sweep.begin; i < sweep.end; ++i)
+    setNormal(out.points[i], tangents[i - sweep.begin], tangents[i - sweep.begin + 1]);
 }
 
 void append(LaserPoints& out, const CObservation2DRangeScan& scan, double max_range) {

@@ -72,11 +72,12 @@ void ParticleFilter::step(const LaserPoints& scan, const std::optional<TPose2D>&
     const PosePrior prior{compose(particle.path.back().pose, motion),
                           motionInformation(params_.motion, motion)};
     const auto proposals = propose(particle, scan, prior);
-    for (std::size_t k = 0; k < proposals.size(); ++k) {
-      Particle child = k + 1 < proposals.size() ? particle : std::move(particle);
-      extend(child, scan, proposals[k]);
-      next.push_back(std::move(child));
+    for (std::size_t k = 1; k < proposals.size(); ++k) {
+      next.push_back(particle);
+      extend(next.back(), scan, proposals[k]);
     }
+    extend(particle, scan, proposals.front());
+    next.push_back(std::move(particle));
   }
   particles_ = std::move(next);
   normalise();
@@ -162,8 +163,11 @@ ParticleFilter::Proposal ParticleFilter::sampled(const Proposal& around, const P
 }
 
 void ParticleFilter::extend(Particle& particle, const LaserPoints& scan, const Proposal& proposal) {
-  PathNode node{proposal.match.pose, static_cast<float>(proposal.match.inlier_share), false,
-                proposal.by_odometry};
+  PathNode node;
+  node.pose = proposal.match.pose;
+  node.information = proposal.match.information;
+  node.inlier_share = static_cast<float>(proposal.match.inlier_share);
+  node.by_odometry = proposal.by_odometry;
   const auto last_key =
       std::find_if(particle.path.rbegin(), particle.path.rend(), [](const auto& n) { return n.key; });
   if (last_key == particle.path.rend()) {

@@ -17,12 +17,15 @@ constexpr std::size_t kMaxFramesPerNode = 10;
 
 struct Motion {
   double distance = 0, turn = 0;
+  bool known = false;  ///< by odometry
+
+  bool moves() const { return !known || distance > kStillM || turn > kStillRad; }
 };
 
 Motion motionBetween(const Frame& a, const Frame& b) {
   if (!a.odometry || !b.odometry) return {};
   return {std::hypot(b.odometry->x - a.odometry->x, b.odometry->y - a.odometry->y),
-          std::abs(mrpt::math::wrapToPi(b.odometry->phi - a.odometry->phi))};
+          std::abs(mrpt::math::wrapToPi(b.odometry->phi - a.odometry->phi)), true};
 }
 
 double seconds(const Frame& a, const Frame& b) {
@@ -60,20 +63,24 @@ void StretchSplitter::startNext() {
   Stretch next;
   next.index = current_.index + 1;
   const auto& frames = current_.frames;  // the last one is the first of the next stretch
-  std::size_t begin = frames.size() - 1;
+  // Walk back from there; frames without motion tell the warm-up nothing and, for a robot that stands still,
+  // never end.
+  std::vector<Frame> backwards{frames.back()};
   double distance = 0, turn = 0;
-  for (int keys = 0; begin > 0 && keys < params_.warm_up_keys;) {
-    const Motion motion = motionBetween(frames[begin - 1], frames[begin]);
-    --begin;
+  int keys = 0;
+  for (std::size_t i = frames.size() - 1; i-- > 0 && keys < params_.warm_up_keys;) {
+    const Motion motion = motionBetween(frames[i], backwards.back());
+    if (!motion.moves()) continue;
+    backwards.push_back(frames[i]);
     distance += motion.distance;
     turn += motion.turn;
-    const bool has_odometry = frames[begin].odometry.has_value();
+    const bool has_odometry = frames[i].odometry.has_value();
     if (distance < params_.key_distance && turn < params_.key_angle && has_odometry) continue;
     ++keys;
     distance = turn = 0;
   }
-  next.warm_up = frames.size() - 1 - begin;
-  next.frames.assign(frames.begin() + static_cast<std::ptrdiff_t>(begin), frames.end());
+  next.warm_up = backwards.size() - 1;
+  next.frames.assign(backwards.rbegin(), backwards.rend());
   current_ = std::move(next);
   distance_ = 0;
   nodes_ = 1;
@@ -81,11 +88,9 @@ void StretchSplitter::startNext() {
 
 std::optional<Stretch> StretchSplitter::push(Frame frame) {
   const bool first = current_.frames.empty();
-  if (!first) {
-    const Motion motion = motionBetween(current_.frames.back(), frame);
-    distance_ += motion.distance;
-    if (!frame.odometry || motion.distance > kStillM || motion.turn > kStillRad) ++nodes_;
-  }
+  const Motion motion = first ? Motion{} : motionBetween(current_.frames.back(), frame);
+  distance_ += motion.distance;
+  if (motion.moves()) ++nodes_;
   const bool close = !first && closes(frame);
   current_.frames.push_back(std::move(frame));
   if (!close) return std::nullopt;

@@ -36,7 +36,8 @@ SurfelMap::SurfelMap(const SurfelMapParams& params)
     : params_(params),
       inverse_resolution_(1.0 / params.resolution),
       fit_cells_(static_cast<int>(std::ceil(params.fit_radius / params.resolution))) {
-  const int reach = static_cast<int>(std::floor(params.search_radius / params.resolution));
+  constexpr double kRounding = 1e-6;  // 0.3 / 0.05 is a hair below 6
+  const int reach = static_cast<int>(std::floor(params.search_radius / params.resolution + kRounding));
   for (int dy = -reach; dy <= reach; ++dy)
     for (int dx = -reach; dx <= reach; ++dx)
       if (dx * dx + dy * dy <= reach * reach) claim_offsets_.push_back({dx, dy});

@@ -6,8 +6,10 @@
 #include <mrpt/opengl/Visualizable.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 #include <submap_slam/core/evidence_grid.h>
+#include <submap_slam/core/packed_evidence.h>
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,7 +56,8 @@ class GridSubmap : public mrpt::obs::CObservation, public mrpt::opengl::Visualiz
   uint64_t first_frame = 0;  ///< Frame::index of the first node
   uint64_t end_frame = 0;    ///< Frame::index of the frame at `end_pose` (first frame of the next submap)
 
-  EvidenceGrid evidence;
+  /** Empty while unloaded, see unload(); whoever reads it takes a LoadedEvidence. */
+  mutable EvidenceGrid evidence;
   std::vector<SubmapNode> nodes;  ///< one for each frame in [first_frame, end_frame), in log order
 
   /** T_s_end: frame `end_frame`, where the next submap starts, with covariance (m², m·rad, rad²). For the
@@ -74,7 +77,23 @@ class GridSubmap : public mrpt::obs::CObservation, public mrpt::opengl::Visualiz
 
   std::size_t keyNodes() const;
 
+  /** False after unload(), until load(). */
+  bool evidenceIsLoaded() const { return !packed_; }
+
+  /** Cell size of the evidence, loaded or not (m). */
+  double resolution() const { return packed_ ? packed_->resolution() : evidence.resolution(); }
+
+  /** What unload() keeps; null while the evidence is loaded. */
+  std::shared_ptr<const PackedEvidence> packedEvidence() const { return packed_; }
+
   // mrpt::obs::CObservation
+  /** Makes `evidence` the grid again that it was before unload(). As unload(), it must not run while another
+   * thread uses this submap. */
+  void load() const override;
+
+  /** Keeps only the observed part of `evidence`, packed, and frees the grid: about a fifth of the memory. */
+  void unload() const override;
+
   void getSensorPose(mrpt::poses::CPose3D& pose) const override;
   void setSensorPose(const mrpt::poses::CPose3D& pose) override;
   void getDescriptionAsText(std::ostream& out) const override;
@@ -84,6 +103,25 @@ class GridSubmap : public mrpt::obs::CObservation, public mrpt::opengl::Visualiz
 
   // mrpt::opengl::Visualizable: the grid and the node trajectory in the local map frame
   void getVisualizationInto(mrpt::opengl::CSetOfObjects& out) const override;
+
+ private:
+  mutable std::shared_ptr<const PackedEvidence> packed_;
+};
+
+/** The evidence of a submap to read from, whether it is loaded or not: an unloaded one is unpacked for as
+ * long as this lives, and the submap is left as it is. */
+class LoadedEvidence {
+ public:
+  explicit LoadedEvidence(const GridSubmap& submap) : submap_(submap) {
+    if (const auto packed = submap.packedEvidence()) unpacked_ = packed->unpacked();
+  }
+
+  const EvidenceGrid& operator*() const { return unpacked_ ? *unpacked_ : submap_.evidence; }
+  const EvidenceGrid* operator->() const { return &**this; }
+
+ private:
+  const GridSubmap& submap_;
+  std::optional<EvidenceGrid> unpacked_;
 };
 
 }  // namespace submap_slam

@@ -11,9 +11,9 @@ namespace submap_slam {
 struct CorrelativeSearchParams {
   double window_xy = 0.2;   ///< m, half width
   double window_phi = 0.4;  ///< rad, half width
-  double step_xy = 0.05;    ///< m
-  double step_phi = 0.02;   ///< rad
-  int max_beams = 90;
+  double step_xy = 0.1;     ///< m
+  double step_phi = 0.04;   ///< rad
+  int max_beams = 60;
   double sigma = 0.1;        ///< m
   double peak_ratio = 0.85;  ///< peaks scoring less than this share of the best are dropped
   int max_peaks = 8;

@@ -2,6 +2,7 @@
 
 #include <submap_slam/core/local_mapper.h>
 #include <submap_slam/core/parameters.h>
+#include <submap_slam/mapping/drift_covariance.h>
 #include <submap_slam/mapping/evidence_renderer.h>
 #include <submap_slam/mapping/particle_filter.h>
 
@@ -17,13 +18,6 @@ struct ClosingParams {
   int undecided_scans = 300;
   double max_sigma_xy = 0.5;   ///< m
   double max_sigma_phi = 0.2;  ///< rad
-};
-
-/** How far the end pose can be trusted. */
-struct DriftParams {
-  double inflation = 1.5;
-  double sigma_xy_per_m = 0.002;    ///< m per √m
-  double sigma_phi_per_m = 0.0002;  ///< rad per √m
 };
 
 struct GridMapperParams {

@@ -27,7 +27,7 @@ struct FilterParams {
   MatcherParams matcher;
   CorrelativeSearchParams search;
   MotionParams motion;
-  double rescue_below = 0.85;       ///< share of inlier beams
+  double rescue_below = 0.85;      ///< share of inlier beams
   double slip_beyond = 5.0;        ///< sigmas
   double slip_cost = 20.0;         ///< negative log probability
   double slip_information = 0.02;  ///< share of the odometry's information that is left in a rescue
@@ -43,7 +43,8 @@ struct FilterParams {
 
 /** What a hypothesis says of one frame. */
 struct PathNode {
-  mrpt::math::TPose2D pose;  ///< T_s_robot
+  mrpt::math::TPose2D pose;                               ///< T_s_robot
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of the scan in the map, (x, y, φ)
   float inlier_share = 1;
   bool key = false;         ///< inserted into the map
   bool by_odometry = true;  ///< agrees with odometry since the last such node

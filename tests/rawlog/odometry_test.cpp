@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "../eval/temp_folder.h"
+#include "../support/temp_folder.h"
 #include "log_builder.h"
 
 namespace submap_slam {

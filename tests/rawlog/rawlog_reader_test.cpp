@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "../eval/temp_folder.h"
+#include "../support/temp_folder.h"
 #include "log_builder.h"
 
 namespace submap_slam {

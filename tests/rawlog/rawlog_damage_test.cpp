@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "../eval/temp_folder.h"
+#include "../support/temp_folder.h"
 #include "log_builder.h"
 
 namespace submap_slam {

@@ -3,7 +3,7 @@
 #include <mrpt/obs/CRawlog.h>
 #include <submap_slam/core/errors.h>
 
-#include "../eval/temp_folder.h"
+#include "../support/temp_folder.h"
 #include "sample_submaps.h"
 
 namespace submap_slam {

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "../eval/temp_folder.h"
+#include "../support/temp_folder.h"
 #include "log_builder.h"
 
 namespace submap_slam {

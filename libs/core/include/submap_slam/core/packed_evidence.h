@@ -1,0 +1,66 @@
+#pragma once
+
+#include <submap_slam/core/evidence_grid.h>
+
+#include <array>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace submap_slam {
+
+/** The observed part of an EvidenceGrid in blocks of 8 × 8 cells; blocks where nothing was observed are not
+ * stored. A submap's grid shrinks to a fifth, because its beams leave most of its bounding box unknown. */
+class PackedEvidence {
+ public:
+  explicit PackedEvidence(const EvidenceGrid& grid);
+
+  /** The grid it was made from, to the last bit. */
+  EvidenceGrid unpacked() const;
+
+  bool empty() const { return cells_.empty(); }
+  double resolution() const { return resolution_; }    ///< m per cell
+  double xMin() const { return x_min_; }               ///< left edge of cell (0, ·) (m)
+  double yMin() const { return y_min_; }               ///< lower edge of cell (·, 0) (m)
+  int sizeX() const { return static_cast<int>(nx_); }  ///< cells
+  int sizeY() const { return static_cast<int>(ny_); }  ///< cells
+
+  /** Log-odds sum and hit count of a cell; (0, 0) if it is unknown or outside. */
+  std::pair<float, float> cell(int cx, int cy) const {
+    const Block* block = blockAt(cx >> kShift, cy >> kShift);
+    if (!block) return {0.0f, 0.0f};
+    const std::size_t k = static_cast<std::size_t>(((cy & kMask) << kShift) + (cx & kMask));
+    return {block->log_odds[k], block->hits[k]};
+  }
+
+  /** Whether any of the four cells (cx, cy) … (cx + 1, cy + 1) may be observed. */
+  bool mayReach(int cx, int cy) const {
+    const int bx = (cx >> kShift) + 1, by = (cy >> kShift) + 1;
+    return bx >= 0 && bx <= columns_ && by >= 0 && by <= rows_ &&
+           reach_[static_cast<std::size_t>(by) * static_cast<std::size_t>(columns_ + 1) +
+                  static_cast<std::size_t>(bx)] != 0;
+  }
+
+ private:
+  static constexpr int kShift = 3, kSide = 1 << kShift, kMask = kSide - 1;
+  struct Block {
+    std::array<float, kSide * kSide> log_odds{}, hits{};  // row by row
+  };
+
+  const Block* blockAt(int bx, int by) const {
+    if (bx < 0 || bx >= columns_ || by < 0 || by >= rows_) return nullptr;
+    const int32_t k = numbers_[static_cast<std::size_t>(by) * static_cast<std::size_t>(columns_) +
+                               static_cast<std::size_t>(bx)];
+    return k < 0 ? nullptr : &cells_[static_cast<std::size_t>(k)];
+  }
+  void addBlock(const EvidenceGrid& grid, int bx, int by);
+
+  double x_min_, y_min_, x_max_, y_max_, resolution_;
+  std::size_t nx_, ny_;
+  int columns_, rows_;            // of blocks
+  std::vector<int32_t> numbers_;  // index into cells_ of each block, row by row; -1: unknown
+  std::vector<Block> cells_;
+  std::vector<uint8_t> reach_;  // mayReach by block, from block (-1, -1), row by row
+};
+
+}  // namespace submap_slam
