@@ -47,7 +47,7 @@ double meanNeesPerDof(const std::string& world_name) {
   const World world = makeWorld(world_name);
   double sum = 0;
   int submaps = 0;
-  for (uint64_t seed = 1; seed <= 3; ++seed) {
+  for (uint64_t seed = 1; seed <= 4; ++seed) {
     const SimulatedLog log = simulate(world, drive(world.route, {}, 5), {}, {}, seed);
     const RbpfGridMapper mapper({}, seed);
     StretchSplitter splitter(StretchParams{});

@@ -252,7 +252,7 @@ TEST(GridMapper, AMatchThatStaysLostClosesTheSubmap) {
   for (std::size_t i = 40; i < 60; ++i) {  // the robot is carried through a crowd
     auto scan = mrpt::obs::CObservation2DRangeScan::Create(*frames[i].scans[0]);
     for (std::size_t b = 0; b < scan->getScanSize(); ++b)
-      scan->setScanRange(b, 0.3f + 0.001f * static_cast<float>(random() % 500));
+      scan->setScanRange(b, 0.3f + 0.02f * static_cast<float>(random() % 500));
     frames[i].scans = {scan};
   }
   const auto submaps = mapLog(frames, params);

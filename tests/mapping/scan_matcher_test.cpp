@@ -129,7 +129,7 @@ TEST_F(Matcher, CostAtTheResultIsScanTermPlusPriorTerm) {
   EXPECT_LE(match.cost, matcher.evaluate(map, scan, {}).cost);
 }
 
-TEST_F(Matcher, DISABLED_ThePriorHoldsTheFreeDirectionOfACorridor) {
+TEST_F(Matcher, ThePriorHoldsTheFreeDirectionOfACorridor) {
   const World corridor = endlessCorridor();
   const SurfelMap walls = mapOf(corridor, {{0, 0, 0}, {0.4, 0, 0}});
   const MatchResult match =

@@ -62,7 +62,7 @@ TEST(SurfelMap, SlantingWallsKeepTheirDirection) {
   }
 }
 
-TEST(SurfelMap, DISABLED_TheSearchRadiusIsReached) {
+TEST(SurfelMap, TheSearchRadiusIsReached) {
   SurfelMapParams params;
   params.search_radius = 0.3;
   SurfelMap map(params);

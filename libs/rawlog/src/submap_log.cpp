@@ -152,8 +152,8 @@ std::vector<uint8_t> gzipMember(const mrpt::serialization::CSerializable& object
 
   z_stream deflater{};
   const int gzip_window = 15 + 16, memory_level = 8;  // with these zlib writes a gzip header without a time
-  if (deflateInit2(&deflater, Z_BEST_SPEED, Z_DEFLATED, gzip_window, memory_level,
-                   Z_DEFAULT_STRATEGY) != Z_OK)
+  if (deflateInit2(&deflater, Z_BEST_SPEED, Z_DEFLATED, gzip_window, memory_level, Z_DEFAULT_STRATEGY) !=
+      Z_OK)
     throw std::bad_alloc();
   const auto raw_bytes = raw.getTotalBytesCount();
   std::vector<uint8_t> member(deflateBound(&deflater, raw_bytes));
