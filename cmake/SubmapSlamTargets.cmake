@@ -19,7 +19,7 @@ if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
 endif()
 
 add_library(submap_slam_options INTERFACE)
-# No contraction to fused multiply-add and no reassociation: results are the same bytes on every x86-64.
+# No contraction to fused multiply-add and no reassociation: the compiler does not change results.
 target_compile_options(submap_slam_options INTERFACE
   -Wall -Wextra -Wshadow -Wconversion -ffp-contract=off $<$<BOOL:${SUBMAP_SLAM_WERROR}>:-Werror>)
 if(SUBMAP_SLAM_SANITIZE)
