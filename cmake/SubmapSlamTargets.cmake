@@ -53,12 +53,12 @@ function(submap_slam_plugin name)
   install(TARGETS ${name} LIBRARY DESTINATION ${SUBMAP_SLAM_PLUGIN_INSTALL_DIR})
 endfunction()
 
-# submap_slam_test(NAME SOURCES … DEPENDS …): a GoogleTest program whose cases ctest lists one by one.
+# submap_slam_test(NAME SOURCES … DEPENDS … LABELS …): a GoogleTest program whose cases ctest lists one by one.
 function(submap_slam_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_DEPENDS} GTest::gmock_main submap_slam_options)
   target_compile_definitions(${name} PRIVATE
     SUBMAP_SLAM_SOURCE_DIR="${PROJECT_SOURCE_DIR}" SUBMAP_SLAM_BINARY_DIR="${PROJECT_BINARY_DIR}")
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300 LABELS "${ARG_LABELS}")
 endfunction()

@@ -22,8 +22,9 @@ void DriftCovariance::move(const mrpt::math::TPose2D& from, const mrpt::math::TP
   path_ += std::hypot(to.x - from.x, to.y - from.y);
 }
 
-void DriftCovariance::addKeyScan(const Eigen::Matrix3d& information) {
-  sum_ += params_.match_scale * params_.match_scale * information.inverse();
+void DriftCovariance::addKeyScan(const Eigen::Matrix3d& scan, const Eigen::Matrix3d& odometry) {
+  const double m = params_.match_scale, o = params_.odometry_scale;
+  sum_ += Eigen::Matrix3d(scan / (m * m) + odometry / (o * o)).inverse();
 }
 
 Eigen::Matrix3d DriftCovariance::covariance() const {

@@ -154,7 +154,7 @@ void SubmapBuild::advance(DriftCovariance& drift, const PathNode& before, const 
   drift.move(before.pose, node.pose);
   if (!node.key) return;
   const TPose2D step = node.pose - before.pose;
-  drift.addKeyScan(node.information + ParticleFilter::motionInformation(params_.filter.motion, step));
+  drift.addKeyScan(node.information, ParticleFilter::motionInformation(params_.filter.motion, step));
 }
 
 mrpt::math::CMatrixDouble33 SubmapBuild::endCovariance(const Span& span, const Filtered& filtered) const {

@@ -71,6 +71,8 @@ void describe(ParameterTable& table, ClosingParams& p) {
 void describe(ParameterTable& table, DriftParams& p) {
   table.add("match_scale", p.match_scale, "", kPositive,
             "Share of the standard deviation that a match's information gives which each key scan adds");
+  table.add("odometry_scale", p.odometry_scale, "", kPositive,
+            "Real standard deviation of odometry as a share of the motion prior's, which is wide on purpose");
   table.add("sigma_xy_per_m", p.sigma_xy_per_m, "m/√m", kNonNegative,
             "Least standard deviation of the end position");
   table.add("sigma_phi_per_m", p.sigma_phi_per_m, "rad/√m", kNonNegative,

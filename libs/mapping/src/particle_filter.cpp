@@ -3,6 +3,7 @@
 #include <mrpt/math/wrap2pi.h>
 #include <mrpt/poses/CPose2D.h>
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -96,43 +97,49 @@ std::vector<ParticleFilter::Proposal> ParticleFilter::propose(const Particle& pa
     return {blind};
   }
   const MatchResult match = matcher_.match(particle.map, scan, prior);
-  const bool plausible = mahalanobis(match.pose, prior) <= params_.slip_beyond;
+  const bool fits =
+      match.inlier_share >= params_.rescue_below && mahalanobis(match.pose, prior) <= params_.slip_beyond;
   std::vector<Proposal> out;
-  if (plausible && match.inlier_share >= params_.rescue_below)
-    out.push_back({match, -params_.likelihood_power * match.cost, true});
+  if (fits && !isSurprising(particle, prior))
+    out.push_back(proposal(match, prior, 0, true));
   else
-    out = rescue(particle, scan, prior, match);
+    out = alternatives(particle, scan, prior, match, !fits);
   if (params_.fixed_particles > 0) out = {sampled(out.front(), prior)};
   return out;
 }
 
-std::vector<ParticleFilter::Proposal> ParticleFilter::rescue(const Particle& particle,
-                                                             const LaserPoints& scan, const PosePrior& prior,
-                                                             const MatchResult& failed) {
-  const TPose2D& last = particle.path.back().pose;
+bool ParticleFilter::isSurprising(const Particle& particle, const PosePrior& prior) const {
+  const TPose2D motion = lastIncrement(particle);
+  const PosePrior expected{compose(particle.path.back().pose, motion),
+                           motionInformation(params_.motion, motion)};
+  return particle.path.size() > 1 && mahalanobis(prior.mean, expected) > params_.slip_beyond;
+}
+
+ParticleFilter::Proposal ParticleFilter::proposal(const MatchResult& match, const PosePrior& prior,
+                                                  double extra_cost, bool by_odometry) const {
+  // Laplace's approximation of the integral over the pose: a wide prior costs where the scan knows better,
+  // and costs nothing along a corridor.
+  const double volume =
+      0.5 * std::log((match.information + prior.information).determinant() / prior.information.determinant());
+  return {match, -params_.likelihood_power * (match.cost + volume + extra_cost), by_odometry};
+}
+
+std::vector<ParticleFilter::Proposal> ParticleFilter::alternatives(const Particle& particle,
+                                                                   const LaserPoints& scan,
+                                                                   const PosePrior& prior,
+                                                                   const MatchResult& match, bool search) {
   std::vector<Proposal> modes;
-  const auto add = [&](const MatchResult& match, double extra_cost, bool by_odometry) {
-    modes.push_back({match, -params_.likelihood_power * (match.cost + extra_cost), by_odometry});
-  };
-  // Odometry is believed, over the last step or, where it stalled and caught up, since it was right last.
-  add(failed, 0, mahalanobis(failed.pose, prior) <= params_.slip_beyond);
+  // Odometry is believed, over the last step or, where it stalled and caught up, since it was right last. Who has
+  // found it wrong pays for believing a leap.
+  const bool leap = !particle.path.back().by_odometry && isSurprising(particle, prior);
+  modes.push_back(proposal(match, prior, leap ? params_.slip_cost : 0.0,
+                           mahalanobis(match.pose, prior) <= params_.slip_beyond));
   if (const auto since = priorSinceAgreement(particle))
-    add(matcher_.match(particle.map, scan, *since), 0, true);
-  // Odometry is not believed: search where it says, and where the robot would be if it went on as before or
-  // stood still.
-  const PosePrior wide{prior.mean, prior.information * params_.slip_information};
-  std::vector<TPose2D> searched;
-  for (const auto& centre : {prior.mean, compose(last, lastIncrement(particle)), last}) {
-    const bool covered = std::any_of(searched.begin(), searched.end(),
-                                     [&](const auto& c) { return covers(params_.search, c, centre); });
-    if (covered) continue;
-    searched.push_back(centre);
-    for (const auto& peak : correlativeSearch(particle.map, scan, centre, params_.search))
-      add(matcher_.match(particle.map, scan, wide, peak.pose), params_.slip_cost, false);
-  }
+    modes.push_back(proposal(matcher_.match(particle.map, scan, *since), *since, 0, true));
+  addSlips(modes, particle, scan, prior, search);
   std::stable_sort(modes.begin(), modes.end(),
                    [](const auto& a, const auto& b) { return a.log_weight > b.log_weight; });
-  if (!sameMode(modes.front().match.pose, failed.pose)) ++rescues_;
+  if (!sameMode(modes.front().match.pose, match.pose)) ++rescues_;
   const double least = modes.front().log_weight + std::log(params_.min_weight);
   std::vector<Proposal> out;
   for (const auto& mode : modes) {
@@ -141,6 +148,26 @@ std::vector<ParticleFilter::Proposal> ParticleFilter::rescue(const Particle& par
     if (!known && mode.log_weight >= least) out.push_back(mode);
   }
   return out;
+}
+
+void ParticleFilter::addSlips(std::vector<Proposal>& modes, const Particle& particle, const LaserPoints& scan,
+                              const PosePrior& prior, bool search) const {
+  const TPose2D &last = particle.path.back().pose, motion = lastIncrement(particle);
+  const Eigen::Matrix3d information = motionInformation(params_.motion, motion) * params_.slip_information;
+  // Wheels that slip go on slipping at no further cost.
+  const double cost = particle.path.back().by_odometry ? params_.slip_cost : 0.0;
+  std::vector<TPose2D> searched;
+  // The robot is about where odometry says, or went on as before, or stood still.
+  for (const auto& centre : {prior.mean, compose(last, motion), last}) {
+    const PosePrior wide{centre, information};
+    modes.push_back(proposal(matcher_.match(particle.map, scan, wide), wide, cost, false));
+    const bool covered = std::any_of(searched.begin(), searched.end(),
+                                     [&](const auto& c) { return covers(params_.search, c, centre); });
+    if (!search || covered) continue;
+    searched.push_back(centre);
+    for (const auto& peak : correlativeSearch(particle.map, scan, centre, params_.search))
+      modes.push_back(proposal(matcher_.match(particle.map, scan, wide, peak.pose), wide, cost, false));
+  }
 }
 
 std::optional<PosePrior> ParticleFilter::priorSinceAgreement(const Particle& particle) const {
@@ -207,7 +234,8 @@ void ParticleFilter::prune() {
   std::vector<Particle> kept;
   for (auto& p : particles_) {
     const bool merged = std::any_of(kept.begin(), kept.end(), [&](const auto& k) {
-      return sameMode(k.path.back().pose, p.path.back().pose);
+      return k.path.back().by_odometry == p.path.back().by_odometry &&
+             sameMode(k.path.back().pose, p.path.back().pose);
     });
     const bool full = kept.size() >= static_cast<std::size_t>(params_.max_particles);
     if (merged || full || p.log_weight < std::log(params_.min_weight)) continue;

@@ -7,7 +7,8 @@ namespace submap_slam {
 
 /** How far poses in a submap can be trusted. */
 struct DriftParams {
-  double match_scale = 0.1;
+  double match_scale = 0.07;
+  double odometry_scale = 0.6;
   double sigma_xy_per_m = 0.001;    ///< m per √m
   double sigma_phi_per_m = 0.0001;  ///< rad per √m
 };
@@ -15,12 +16,12 @@ struct DriftParams {
 /** Covariance of the robot's pose relative to the submap's frame, accumulated along the path from the
  * information of the matches (the spread of a particle filter is overconfident by far):
  *
- *     P ← J P Jᵀ + match_scale² (H + Λ)⁻¹ at each key scan,
+ *     P ← J P Jᵀ + (H / match_scale² + Λ / odometry_scale²)⁻¹ at each key scan,
  *
  * J the lever arm of the motion since, H the scan's information in the map, Λ that of odometry; plus a floor
- * that grows with the distance. The scale is far below 1: the matcher's sigma is the width of its robust
- * loss, several times the noise of a beam, and successive scans are matched to the same map, so their errors
- * add up much slower than independent ones.
+ * that grows with the distance. The scale of the matches is far below 1: the matcher's sigma is the width of
+ * its robust loss, several times the noise of a beam, and successive scans are matched to the same map, so
+ * their errors add up much slower than independent ones.
  */
 class DriftCovariance {
  public:
@@ -29,8 +30,10 @@ class DriftCovariance {
   /** The robot moved from one pose to another, both in the submap's frame. */
   void move(const mrpt::math::TPose2D& from, const mrpt::math::TPose2D& to);
 
-  /** A key scan was inserted here. @param information H + Λ of (x, y, φ) */
-  void addKeyScan(const Eigen::Matrix3d& information);
+  /** A key scan was inserted here.
+   * @param scan      H, information of its match
+   * @param odometry  Λ, that of the motion prior; wide on purpose, so its scale is below 1 too */
+  void addKeyScan(const Eigen::Matrix3d& scan, const Eigen::Matrix3d& odometry);
 
   /** Of (x, y, φ) at the last pose; m², m·rad, rad². */
   Eigen::Matrix3d covariance() const;

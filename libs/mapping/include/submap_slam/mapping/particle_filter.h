@@ -29,7 +29,7 @@ struct FilterParams {
   MotionParams motion;
   double rescue_below = 0.85;      ///< share of inlier beams
   double slip_beyond = 5.0;        ///< sigmas
-  double slip_cost = 20.0;         ///< negative log probability
+  double slip_cost = 10.0;         ///< negative log probability
   double slip_information = 0.02;  ///< share of the odometry's information that is left in a rescue
   double key_distance = 0.15;      ///< m
   double key_angle = 0.1;          ///< rad
@@ -91,8 +91,15 @@ class ParticleFilter {
     bool by_odometry = true;  ///< see PathNode
   };
   std::vector<Proposal> propose(const Particle& particle, const LaserPoints& scan, const PosePrior& prior);
-  std::vector<Proposal> rescue(const Particle& particle, const LaserPoints& scan, const PosePrior& prior,
-                               const MatchResult& failed);
+  /** True if odometry says something quite different from the motion before: wheels that start to slip. */
+  bool isSurprising(const Particle& particle, const PosePrior& prior) const;
+  Proposal proposal(const MatchResult& match, const PosePrior& prior, double extra_cost,
+                    bool by_odometry) const;
+  /** All modes where odometry or the match with it is in doubt. @param search also by correlative search */
+  std::vector<Proposal> alternatives(const Particle& particle, const LaserPoints& scan,
+                                     const PosePrior& prior, const MatchResult& match, bool search);
+  void addSlips(std::vector<Proposal>& modes, const Particle& particle, const LaserPoints& scan,
+                const PosePrior& prior, bool search) const;
   /** Odometry's prediction from the last node that agreed with it; empty if that was the last node. */
   std::optional<PosePrior> priorSinceAgreement(const Particle& particle) const;
   Proposal sampled(const Proposal& around, const PosePrior& prior);
