@@ -26,6 +26,8 @@ if(SUBMAP_SLAM_SANITIZE)
   target_compile_options(submap_slam_options INTERFACE
     -fsanitize=${SUBMAP_SLAM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(submap_slam_options INTERFACE -fsanitize=${SUBMAP_SLAM_SANITIZE})
+  # Under a sanitizer Eigen would align by itself, and free what MRPT's libraries, built without one, allocate.
+  target_compile_definitions(submap_slam_options INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 
 # submap_slam_library(NAME [SHARED] SOURCES … DEPENDS …): a library of libs/<dir> with its include folder.

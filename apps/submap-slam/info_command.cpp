@@ -24,13 +24,13 @@ std::string endPoseSigma(const GridSubmap& submap) {
                      std::sqrt(cov(2, 2)) * radians_to_degrees);
 }
 
-void printSubmap(const GridSubmap& submap, double overlap) {
-  const auto& grid = submap.evidence.hits;
+void printSubmap(const GridSubmap& submap, const EvidenceGrid& evidence, double overlap) {
+  const auto& grid = evidence.hits;
   const std::string size =
       fmt::format("{:.1f} x {:.1f}", grid.getXMax() - grid.getXMin(), grid.getYMax() - grid.getYMin());
   fmt::print("{:>4} {:>8.1f} {:>6} {:>5} {:>9} {:>13} {:>6.0f} % {:>16}  {}\n", submap.id,
-             submap.pathLength(), submap.nodes.size(), submap.keyNodes(), submap.evidence.observedCells(),
-             size, 100 * overlap, endPoseSigma(submap), submap.statistics.closed_because);
+             submap.pathLength(), submap.nodes.size(), submap.keyNodes(), evidence.observedCells(), size,
+             100 * overlap, endPoseSigma(submap), submap.statistics.closed_because);
 }
 
 int runInfo(const std::string& file) {
@@ -43,11 +43,12 @@ int runInfo(const std::string& file) {
              "cells", "size m", "overlap", "end pose sigma", "closed because");
   for (std::size_t i = 0; i < submaps.size(); ++i) {
     const GridSubmap& submap = *submaps[i];
-    printSubmap(submap, overlaps[i]);
+    const LoadedEvidence evidence(submap);
+    printSubmap(submap, *evidence, overlaps[i]);
     totals.path_m += submap.pathLength();
     totals.nodes += submap.nodes.size();
     totals.keys += submap.keyNodes();
-    totals.cells += submap.evidence.observedCells();
+    totals.cells += evidence->observedCells();
   }
   fmt::print("{} submaps, {:.1f} m, {} nodes, {} key nodes, {} observed cells\n", submaps.size(),
              totals.path_m, totals.nodes, totals.keys, totals.cells);

@@ -1,5 +1,6 @@
 /** submap-slam: makes large, accurate 2D maps from MRPT rawlogs by building and joining submaps. */
 #include <fmt/format.h>
+#include <malloc.h>
 #include <submap_slam/core/errors.h>
 #include <submap_slam/core/version.h>
 
@@ -73,10 +74,18 @@ int runReportingErrors(int argc, char** argv) {
   }
 }
 
+/** Gives the memory of big grids back to the system when they go. By default glibc raises the limit with each
+ * one that is freed, and what is left of the heap grows full of holes. */
+void returnBigBlocks() {
+  constexpr int kBigBlock_bytes = 128 * 1024;
+  mallopt(M_MMAP_THRESHOLD, kBigBlock_bytes);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
+    returnBigBlocks();
     catchStopSignals();
     return runReportingErrors(argc, argv);
   } catch (...) {  // stderr itself is gone, or memory is

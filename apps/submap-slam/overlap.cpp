@@ -17,7 +17,8 @@ constexpr int32_t kNobody = -1, kSeveral = -2;
 /** Calls visit(x, y) with the centre of each observed cell in the global map frame. */
 template <class Visit>
 void forEachObservedCell(const GridSubmap& submap, const mrpt::poses::CPosePDFGaussian& T_w_s, Visit visit) {
-  const auto& hits = submap.evidence.hits;
+  const LoadedEvidence evidence(submap);
+  const auto& hits = evidence->hits;
   const auto T = T_w_s.mean.asTPose();
   const double c = std::cos(T.phi), s = std::sin(T.phi);
   for (std::size_t cy = 0; cy < hits.getSizeY(); ++cy) {
@@ -39,7 +40,7 @@ Owners emptyOwners(const GridSubmaps& submaps, const Frames& frames) {
     const double r = submaps[i]->radius();
     x_min = std::min(x_min, T.x - r), x_max = std::max(x_max, T.x + r);
     y_min = std::min(y_min, T.y - r), y_max = std::max(y_max, T.y + r);
-    resolution = std::min(resolution, submaps[i]->evidence.resolution());
+    resolution = std::min(resolution, submaps[i]->resolution());
   }
   const double margin = 2 * resolution;
   Owners owners(x_min - margin, x_max + margin, y_min - margin, y_max + margin, resolution);

@@ -124,7 +124,7 @@ TEST(Resume, RefusesAnotherRun) {
     SubmapLogWriter::resume(file, other);
     FAIL() << "another configuration was accepted";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr(file), HasSubstr("config_hash")));
+    EXPECT_THAT(error.what(), AllOf(HasSubstr(file), HasSubstr("other parameters")));
   }
   EXPECT_EQ(readAll(file), bytes);
 }
@@ -150,10 +150,10 @@ TEST(Resume, NamesEveryDifference) {
   config.config_hash = "2";
   log.log = "2";
   size.log_bytes = 2;
-  EXPECT_EQ(runDifference(run, version), "version");
-  EXPECT_EQ(runDifference(run, config), "config_hash");
-  EXPECT_EQ(runDifference(run, log), "log");
-  EXPECT_EQ(runDifference(run, size), "log_bytes");
+  EXPECT_EQ(runDifference(run, version), "another version");
+  EXPECT_EQ(runDifference(run, config), "other parameters");
+  EXPECT_EQ(runDifference(run, log), "another log");
+  EXPECT_EQ(runDifference(run, size), "a log of another size");
 }
 
 TEST(Resume, WritingToAnImpossiblePlaceIsAnOutputError) {

@@ -46,8 +46,10 @@ TEST(SubmapLog, RoundTrip) {
     EXPECT_EQ(submap.id, k);
     EXPECT_EQ(submap.timestamp, wanted->timestamp);
     EXPECT_EQ(submap.first_frame, 10 * k);
-    ASSERT_EQ(submap.evidence.cells(), wanted->evidence.cells());
-    EXPECT_EQ(*submap.evidence.log_odds.cellByIndex(3, 4), 0.5f + static_cast<float>(k));
+    EXPECT_FALSE(submap.evidenceIsLoaded());
+    const LoadedEvidence evidence(submap);
+    ASSERT_EQ(evidence->cells(), wanted->evidence.cells());
+    EXPECT_EQ(*evidence->log_odds.cellByIndex(3, 4), 0.5f + static_cast<float>(k));
     ASSERT_EQ(submap.nodes.size(), 2u);
     EXPECT_EQ(submap.nodes[1].pose, wanted->nodes[1].pose);
     EXPECT_EQ(submap.keyNodes(), 1u);

@@ -12,6 +12,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <new>
 #include <ostream>
 
 IMPLEMENTS_SERIALIZABLE(GridSubmap, mrpt::obs::CObservation, submap_slam)
@@ -104,7 +106,9 @@ void GridSubmap::load() const {
 void GridSubmap::unload() const {
   if (packed_) return;
   packed_ = std::make_shared<const PackedEvidence>(evidence);
-  evidence = EvidenceGrid();
+  // Assigning an empty grid would keep the memory: MRPT's grids are copied, never moved.
+  std::destroy_at(&evidence);
+  new (&evidence) EvidenceGrid();
 }
 
 double GridSubmap::radius() const {

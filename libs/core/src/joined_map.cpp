@@ -25,7 +25,7 @@ struct FusionSums {
 
 /** The packed evidence of a submap, which stays as it is: loaded or not. */
 std::shared_ptr<const PackedEvidence> packed(const GridSubmap& submap) {
-  if (const auto kept = submap.packedEvidence()) return kept;
+  if (auto kept = submap.packedEvidence()) return kept;
   return std::make_shared<const PackedEvidence>(submap.evidence);
 }
 

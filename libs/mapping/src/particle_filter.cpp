@@ -129,8 +129,8 @@ std::vector<ParticleFilter::Proposal> ParticleFilter::alternatives(const Particl
                                                                    const PosePrior& prior,
                                                                    const MatchResult& match, bool search) {
   std::vector<Proposal> modes;
-  // Odometry is believed, over the last step or, where it stalled and caught up, since it was right last. Who has
-  // found it wrong pays for believing a leap.
+  // Odometry is believed, over the last step or, where it stalled and caught up, since it was right last. Who
+  // has found it wrong pays for believing a leap.
   const bool leap = !particle.path.back().by_odometry && isSurprising(particle, prior);
   modes.push_back(proposal(match, prior, leap ? params_.slip_cost : 0.0,
                            mahalanobis(match.pose, prior) <= params_.slip_beyond));

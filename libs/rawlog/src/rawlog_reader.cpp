@@ -67,7 +67,7 @@ bool isFinite(const mrpt::math::TPose2D& pose) {
 CActionRobotMovement2D::Ptr chooseMovement(const mrpt::obs::CActionCollection& actions) {
   CActionRobotMovement2D::Ptr chosen;
   for (const auto& action : actions) {
-    const auto movement = std::dynamic_pointer_cast<CActionRobotMovement2D>(action.get_ptr());
+    auto movement = std::dynamic_pointer_cast<CActionRobotMovement2D>(action.get_ptr());
     if (!movement) continue;
     if (movement->estimationMethod == CActionRobotMovement2D::emOdometry) return movement;
     if (!chosen) chosen = movement;

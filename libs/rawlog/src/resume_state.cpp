@@ -43,10 +43,10 @@ void writeResumeState(const std::string& submap_file, const ResumeState& state) 
 }
 
 std::string runDifference(const ResumeState& a, const ResumeState& b) {
-  if (a.version != b.version) return "version";
-  if (a.config_hash != b.config_hash) return "config_hash";
-  if (a.log != b.log) return "log";
-  if (a.log_bytes != b.log_bytes) return "log_bytes";
+  if (a.version != b.version) return "another version";
+  if (a.config_hash != b.config_hash) return "other parameters";
+  if (a.log != b.log) return "another log";
+  if (a.log_bytes != b.log_bytes) return "a log of another size";
   return "";
 }
 

@@ -64,7 +64,7 @@ GridSubmap::Ptr SubmapLogReader::next() {
   const auto object = stream.next();
   if (stream.damage()) impl_->fail(stream.damage()->text);
   if (!object) return nullptr;
-  const auto submap = std::dynamic_pointer_cast<GridSubmap>(object);
+  auto submap = std::dynamic_pointer_cast<GridSubmap>(object);
   if (!submap)
     impl_->fail(fmt::format("{}: entry {} is a {}, expected a GridSubmap", impl_->file, stream.entries() - 1,
                             object->GetRuntimeClass()->className));
@@ -79,10 +79,22 @@ GridSubmap::Ptr SubmapLogReader::next() {
 uint64_t SubmapLogReader::validBytes() const { return impl_->valid_bytes; }
 double SubmapLogReader::fractionRead() const { return impl_->stream.fractionRead(); }
 
+namespace {
+
+/** All the rest of the file; grids are packed one by one, so that a long log fits into memory. */
+void readPacked(SubmapLogReader& reader, GridSubmaps& submaps) {
+  while (auto submap = reader.next()) {
+    submap->unload();
+    submaps.push_back(std::move(submap));
+  }
+}
+
+}  // namespace
+
 GridSubmaps readSubmaps(const std::string& file) {
   SubmapLogReader reader(file);
   GridSubmaps submaps;
-  while (auto submap = reader.next()) submaps.push_back(std::move(submap));
+  readPacked(reader, submaps);
   if (submaps.empty()) throw InputError(fmt::format("{}: holds no submaps", file));
   return submaps;
 }
@@ -91,7 +103,7 @@ RecoveredSubmaps recoverSubmaps(const std::string& file) {
   SubmapLogReader reader(file);
   RecoveredSubmaps recovered;
   try {
-    while (auto submap = reader.next()) recovered.submaps.push_back(std::move(submap));
+    readPacked(reader, recovered.submaps);
   } catch (const InputError& error) {
     recovered.damage = error.what();
   }
@@ -114,7 +126,7 @@ SubmapLogWriter SubmapLogWriter::resume(const std::string& file, const ResumeSta
   if (!state) return SubmapLogWriter(file, run);
   if (const auto key = runDifference(*state, run); !key.empty())
     throw InputError(
-        fmt::format("{}: cannot be resumed, it belongs to a run with another {}", resumeFileOf(file), key));
+        fmt::format("{}: cannot be resumed, it belongs to a run with {}", resumeFileOf(file), key));
   checkFront(file, *state);
   SubmapLogWriter writer;
   writer.file_ = file;

@@ -31,8 +31,8 @@ std::optional<ResumeState> readResumeState(const std::string& submap_file);
  * OutputError. */
 void writeResumeState(const std::string& submap_file, const ResumeState& state);
 
-/** Text naming the first part of the identity that differs, for example "config_hash"; empty if it is the
- * same run. */
+/** Text naming the first part of the identity that differs, for example "other parameters"; empty if it is
+ * the same run. */
 std::string runDifference(const ResumeState& a, const ResumeState& b);
 
 /** 16 hex digits (FNV-1a, 64 bits) that identify a text such as the effective configuration. */

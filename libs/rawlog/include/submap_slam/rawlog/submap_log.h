@@ -39,8 +39,9 @@ class SubmapLogReader {
   std::unique_ptr<Impl> impl_;
 };
 
-/** All submaps of a file. Throws InputError if it is damaged, empty or holds something else; the text names
- * the offset and how many submaps before it are valid. */
+/** All submaps of a file, unloaded (read their evidence with LoadedEvidence). Throws InputError if it is
+ * damaged, empty or holds something else; the text names the offset and how many submaps before it are valid.
+ */
 GridSubmaps readSubmaps(const std::string& file);
 
 /** What can be used of a file of submaps. */
@@ -50,7 +51,7 @@ struct RecoveredSubmaps {
   std::string damage;        ///< what is wrong behind that part; empty: nothing
 };
 
-/** The submaps before the first damage. Throws InputError only if the file cannot be opened. */
+/** The submaps before the first damage, unloaded. Throws InputError only if the file cannot be opened. */
 RecoveredSubmaps recoverSubmaps(const std::string& file);
 
 /** Writes submaps to a file that is a rawlog, each as a gzip member of its own, and keeps the state to resume
