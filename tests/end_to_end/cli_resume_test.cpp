@@ -110,7 +110,7 @@ TEST_F(ResumeTest, AnotherRunIsNotContinued) {
   const std::string before = contentOf(path("s.rawlog"));
 
   arguments.insert(arguments.end(), {"--seed", "99"});
-  expectRefused(run(arguments), "config");
+  expectRefused(run(arguments), "other parameters");
   expectRefused(run(quickly({"build", log("loop.rawlog"), "-o", path("s.rawlog")})), "log");
   EXPECT_TRUE(contentOf(path("s.rawlog")) == before);
 }
