@@ -53,12 +53,15 @@ void countObservations(benchmark::State& state) {
 }
 
 template <class Scalar>
-void fusedPoseOnly(benchmark::State& state, JacobianKind jacobian) {
+void fusedPoseOnly(benchmark::State& state, JacobianKind jacobian,
+                   InstructionSet instructions = bestInstructionSet()) {
+  if (!isSupported(instructions)) return state.SkipWithError("not on this machine");
   const EightSubmaps& w = world();
   const EvidenceLevels& level = jacobian == JacobianKind::kPaper ? w.level : w.above;
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   for (auto _ : state) {
-    const ReducedSystem reduced = reduce<Scalar>(PlacedLevels(level, w.frames, kAngle), w.frames, jacobian);
+    const ReducedSystem reduced =
+        reduce<Scalar>(PlacedLevels(level, w.frames, kAngle), w.frames, jacobian, instructions);
     benchmark::DoNotOptimize(solve(reduced.system, w.held, dampingDiagonal(reduced.system, 0)));
   }
   countObservations(state);
@@ -88,10 +91,16 @@ void fullGaussNewton(benchmark::State& state) {
 void fusedFloat(benchmark::State& state, JacobianKind jacobian) { fusedPoseOnly<float>(state, jacobian); }
 void fusedDouble(benchmark::State& state, JacobianKind jacobian) { fusedPoseOnly<double>(state, jacobian); }
 
+void fusedFloatOn(benchmark::State& state, InstructionSet instructions) {
+  fusedPoseOnly<float>(state, JacobianKind::kVariableProjection, instructions);
+}
+
 BENCHMARK_CAPTURE(fusedFloat, paper, JacobianKind::kPaper)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(fusedFloat, variable_projection, JacobianKind::kVariableProjection)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(fusedFloat, surface, JacobianKind::kSurface)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(fusedFloatOn, baseline, InstructionSet::kBaseline)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(fusedFloatOn, avx2, InstructionSet::kAvx2)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(fusedDouble, variable_projection, JacobianKind::kVariableProjection)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(explicitPoseOnly)->Unit(benchmark::kMillisecond);

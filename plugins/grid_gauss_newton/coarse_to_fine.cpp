@@ -60,7 +60,7 @@ struct Candidate {
 /** The schedule and what it needs at every level. */
 class Schedule {
  public:
-  Schedule(const std::vector<EvidenceLevels>& pyramid, const ChainPrior& prior,
+  Schedule(const std::vector<EvidenceLevels>& pyramid, const ConstraintPrior& prior,
            const CoarseToFineOptions& options, const IterationCallback& callback)
       : pyramid_(pyramid), prior_(prior), options_(options), callback_(callback) {}
 
@@ -73,10 +73,10 @@ class Schedule {
                             const Evaluation& at_start);
   LevelResult optimiseCoarse(std::size_t k, const Frames& start);
   bool descend(const LevelProblem& finest, Candidate& best);
-  CoarseToFineResult conclude(const LevelResult& finest);
+  CoarseToFineResult conclude(const LevelResult& finest, double evidence_variance);
 
   const std::vector<EvidenceLevels>& pyramid_;
-  const ChainPrior& prior_;
+  const ConstraintPrior& prior_;
   const CoarseToFineOptions& options_;
   const IterationCallback& callback_;
   std::vector<JoinIteration> iterations_;
@@ -144,7 +144,7 @@ bool Schedule::descend(const LevelProblem& finest, Candidate& best) {
   return true;
 }
 
-CoarseToFineResult Schedule::conclude(const LevelResult& finest) {
+CoarseToFineResult Schedule::conclude(const LevelResult& finest, double evidence_variance) {
   CoarseToFineResult result;
   result.iterations = std::move(iterations_);
   const bool unfinished = finest.stop == StopReason::kIterationLimit || finest.stop == StopReason::kCancelled;
@@ -153,11 +153,14 @@ CoarseToFineResult Schedule::conclude(const LevelResult& finest) {
   result.frames = finest.frames;
   result.objective = finest.evaluation.objective;
   const PoseSystem& system = finest.evaluation.total;
-  const auto groups = groupsOf(system);
+  result.groups = groupsOf(system);
   const auto covariances = marginalCovariances(system, anchorsOf(system), dampingDiagonal(system, 0));
   result.covariances.resize(finest.frames.size());
-  for (std::size_t i = 0; covariances && i < groups.size(); ++i)
-    if (groups[i] == 0) result.covariances[i] = (*covariances)[i];
+  if (!covariances) return result;
+  for (std::size_t i = 0; i < result.groups.size(); ++i)
+    if (result.groups[i] == 0) result.covariances[i] = (*covariances)[i];
+  result.open_directions =
+      openDirections(finest.evaluation, evidence_variance, *covariances, cellSize(pyramid_.front()));
   return result;
 }
 
@@ -179,13 +182,13 @@ CoarseToFineResult Schedule::run(const Frames& start) {
       overlapWeight(PlacedLevels(pyramid_.front(), finest.frames, options_.lattice_angle));
   const double after = objectiveAtOverlap(finest.evaluation, comparison.evidence_variance, overlap);
   if (after > before * (1 + kEquallyGood)) return failed(start, before, std::move(iterations_));
-  return conclude(finest);
+  return conclude(finest, problem.evidence_variance);
 }
 
 }  // namespace
 
 CoarseToFineResult joinCoarseToFine(const std::vector<EvidenceLevels>& pyramid, const Frames& start,
-                                    const ChainPrior& prior, const CoarseToFineOptions& options,
+                                    const ConstraintPrior& prior, const CoarseToFineOptions& options,
                                     const IterationCallback& callback) {
   return Schedule(pyramid, prior, options, callback).run(start);
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "levenberg_marquardt.h"
+#include "observability.h"
 
 namespace submap_slam::grid_joining {
 
@@ -33,6 +34,9 @@ struct CoarseToFineResult {
    * for submaps that nothing connects to the first one. */
   std::vector<std::optional<Eigen::Matrix3d>> covariances;
 
+  std::vector<std::size_t> groups;             ///< see groupsOf; empty unless joined
+  std::vector<OpenDirection> open_directions;  ///< of all groups
+
   double objective = 0;  ///< F at `frames` at the finest level, with the evidence variance found there
   std::vector<JoinIteration> iterations;
 };
@@ -42,7 +46,7 @@ struct CoarseToFineResult {
  * refused.
  * @param pyramid finest level first */
 CoarseToFineResult joinCoarseToFine(const std::vector<EvidenceLevels>& pyramid, const Frames& start,
-                                    const ChainPrior& prior, const CoarseToFineOptions& options,
+                                    const ConstraintPrior& prior, const CoarseToFineOptions& options,
                                     const IterationCallback& callback);
 
 }  // namespace submap_slam::grid_joining

@@ -109,7 +109,7 @@ struct FreeProblem {
     const auto columns = columnsOf(held, free);
     select = selection(columns, free);
     jacobian = problem.pose_jacobian * select;
-    added_matrix = select.transpose() * SparseMatrix(pose_terms.denseMatrix().sparseView()) * select;
+    added_matrix = select.transpose() * pose_terms.sparseMatrix() * select;
     added_gradient = select.transpose() * pose_terms.denseGradient();
   }
   SparseMatrix select, jacobian, added_matrix;

@@ -40,6 +40,12 @@ Frames meansOf(const std::vector<mrpt::poses::CPosePDFGaussian>& frames) {
   return means;
 }
 
+std::vector<uint32_t> idsOf(const GridSubmaps& submaps) {
+  std::vector<uint32_t> ids;
+  for (const auto& submap : submaps) ids.push_back(submap->id);
+  return ids;
+}
+
 /** Share of the work done after an iteration: levels count alike, and so do iterations up to the cap. */
 double shareDone(int levels, int level, int iteration_of_level, int max_iterations) {
   const double share = std::min(1.0, static_cast<double>(iteration_of_level) / max_iterations);
@@ -76,9 +82,10 @@ void GridGaussNewton::describe(ParameterTable& table) {
   table.add("turn_tolerance", turn_tolerance_, "rad", {0, 1}, "See step_tolerance.");
   table.add("cost_tolerance", cost_tolerance_, "", {0, 1},
             "Converged when the objective falls by a smaller share; doubled at each coarser level.");
-  table.add("prior_weight", prior_weight_, "", {0, 1e9},
-            "Factor on the information of the submaps' end poses, which hold what the evidence does not show "
-            "(the length of corridors); 0 ignores them.");
+  table.add(
+      "prior_weight", prior_weight_, "", {0, 1e9},
+      "Factor on the information of the constraints (end poses of the submaps, loop closures), which hold "
+      "what the evidence does not show (the length of corridors); 0 ignores them.");
   table.add(
       "correlation_length", correlation_length_, "m", {0, 100},
       "Distance over which cells err together; the evidence counts as one witness for each such square.");
@@ -126,13 +133,18 @@ JoinedMap GridGaussNewton::join(const GridSubmaps& submaps, const JoinedMap& ini
   const bool as_published = jacobian_ == "paper" || coarse_jacobian_ == "paper";
   const double background = as_published ? 0 : backgroundOf(submaps);
   const auto pyramid = buildPyramid(submaps, {finest_level_, levels_, background});
-  const CoarseToFineResult result = joinCoarseToFine(pyramid, meansOf(initial.frames),
-                                                     ChainPrior(submaps, prior_weight_), options(), report);
+  const CoarseToFineResult result =
+      joinCoarseToFine(pyramid, meansOf(initial.frames),
+                       ConstraintPrior(initial.constraints, submaps, prior_weight_), options(), report);
   joined.status = result.status;
   joined.reason = result.reason;
   joined.objective = result.objective;
   joined.iterations = result.iterations;
   if (result.status == JoinStatus::kNothingToJoin || result.status == JoinStatus::kFailed) return joined;
+  const std::vector<uint32_t> ids = idsOf(submaps);
+  for (const std::string& remark :
+       {describeGroups(result.groups, ids), describeOpen(result.open_directions, ids)})
+    if (!remark.empty()) joined.reason += "; " + remark;
   for (std::size_t i = 0; i < joined.frames.size(); ++i) {
     joined.frames[i].mean = mrpt::poses::CPose2D(result.frames[i]);
     if (result.covariances[i]) joined.frames[i].cov = *result.covariances[i];

@@ -31,7 +31,7 @@ class GridGaussNewton : public SubmapJoiner {
   grid_joining::CoarseToFineOptions options() const;
 
   std::string solver_ = "pose_only", jacobian_ = "variable_projection", coarse_jacobian_ = "surface";
-  int levels_ = 4, finest_level_ = 1, max_iterations_ = 40;
+  int levels_ = 5, finest_level_ = 0, max_iterations_ = 40;
   double step_tolerance_ = 2e-4, turn_tolerance_ = 1e-5, cost_tolerance_ = 2e-4;
   double prior_weight_ = 1, correlation_length_ = 1, lattice_angle_ = 0.41;
 };

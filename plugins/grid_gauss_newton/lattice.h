@@ -48,12 +48,12 @@ struct TileMember {
   bool surface = false;  ///< it may show surfaces there; without any the tile adds nothing to the cost
 };
 
-/** A tile of the lattice and the submaps that may be seen in it, in ascending order. */
+/** A tile of the lattice that two or more submaps touch. */
 struct Tile {
-  int a = 0, b = 0;  ///< its first lattice point
-  std::vector<TileMember> members;
-
-  bool hasSurface() const;
+  int a = 0, b = 0;          ///< its first lattice point
+  std::size_t first_member;  ///< in PlacedLevels::members
+  std::size_t members;       ///< how many
+  bool surface;              ///< any of them may show surfaces
 };
 
 /** All submaps at one resolution, placed, and where they may overlap. */
@@ -61,7 +61,8 @@ struct PlacedLevels {
   PlacedLevels(const EvidenceLevels& levels, const Frames& frames, double lattice_angle);
 
   std::vector<PlacedLevel> submaps;  ///< in the order given
-  std::vector<Tile> tiles;           ///< those that two or more submaps touch, row by row
+  std::vector<Tile> tiles;           ///< row by row
+  std::vector<TileMember> members;   ///< of all tiles, in ascending order for each tile
 };
 
 }  // namespace submap_slam::grid_joining

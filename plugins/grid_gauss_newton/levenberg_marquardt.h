@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "chain_prior.h"
+#include "constraint_prior.h"
 #include "reduced_system.h"
 
 namespace submap_slam::grid_joining {
@@ -12,7 +12,7 @@ namespace submap_slam::grid_joining {
 /** What is minimised at one level: F(X) = cost(X) / evidence_variance + prior(X). */
 struct LevelProblem {
   const EvidenceLevels& level;
-  const ChainPrior& prior;
+  const ConstraintPrior& prior;
   JacobianKind jacobian = JacobianKind::kVariableProjection;
   double lattice_angle = 0;      ///< rad
   double evidence_variance = 1;  ///< variance of one residual of the evidence, see estimateEvidenceVariance

@@ -3,6 +3,7 @@
 #include <mrpt/math/TPose2D.h>
 
 #include <Eigen/Dense>
+#include <Eigen/SparseCore>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -35,6 +36,7 @@ struct PoseSystem {
 
   /** The whole of A and g (3 rows a frame). */
   Eigen::MatrixXd denseMatrix() const;
+  Eigen::SparseMatrix<double> sparseMatrix() const;
   Eigen::VectorXd denseGradient() const;
 };
 

@@ -92,7 +92,7 @@ EvidenceLevel::EvidenceLevel(const EvidenceRaster& raster)
   const int columns = (raster.columns + kBlock - 1) / kBlock, rows = (raster.rows + kBlock - 1) / kBlock;
   table_columns_ = static_cast<std::size_t>(columns + 2 * kMargin);
   table_rows_ = static_cast<std::size_t>(rows + 2 * kMargin);
-  numbers_.assign(table_columns_ * table_rows_, 0);
+  origins_.assign(table_columns_ * table_rows_, 0);
   surfaces_.assign(table_columns_ * table_rows_, 0);
   cells_.resize(kStride * kStride);
   for (int r = 0; r < rows; ++r)
@@ -118,11 +118,16 @@ void EvidenceLevel::addBlock(const EvidenceRaster& raster, int block_column, int
     for (int c = 0; c < kBlock; ++c)
       if (above(c, r) || above(c + 1, r) || above(c, r + 1) || above(c + 1, r + 1))
         block.surface |= uint64_t{1} << (r * kBlock + c);
+  const std::size_t index = tableIndex(corner.column, corner.row);
+  origins_[index] = static_cast<int32_t>(cells_.size());
+  surfaces_[index] = block.surface;
   blocks_.push_back(block);
   cells_.insert(cells_.end(), cells.begin(), cells.end());
-  const std::size_t index = tableIndex(corner.column, corner.row);
-  numbers_[index] = static_cast<int32_t>(blocks_.size());
-  surfaces_[index] = block.surface;
+}
+
+EvidenceBlockTable EvidenceLevel::tableAt(int column, int row) const {
+  const std::size_t index = tableIndex(column, row);
+  return {&origins_[index], &surfaces_[index], static_cast<int>(table_columns_), cells_.data()};
 }
 
 bool EvidenceLevel::tableHolds(double column, double row) const {
@@ -137,7 +142,9 @@ EvidenceSample EvidenceLevel::sample(double column, double row) const {
   if (!tableHolds(column, row)) return s;
   const double c = std::floor(column), r = std::floor(row);
   const int ci = static_cast<int>(c), ri = static_cast<int>(r);
-  const EvidenceCell* low = cellsOf(number(ci, ri)) + (ri & (kBlock - 1)) * kStride + (ci & (kBlock - 1));
+  const EvidenceBlockTable table = tableAt(ci, ri);
+  const EvidenceCell* low =
+      table.cells + *table.origins + (ri & (kBlock - 1)) * kStride + (ci & (kBlock - 1));
   const EvidenceCell* high = low + kStride;
   const auto corners = [&](float EvidenceCell::*value) {
     return std::array<double, 4>{static_cast<double>(low[0].*value), static_cast<double>(low[1].*value),

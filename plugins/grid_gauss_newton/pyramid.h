@@ -53,6 +53,15 @@ struct EvidenceRaster {
   }
 };
 
+/** Blocks of an EvidenceLevel around some block: the one `right` and `up` of it is entry right + stride · up.
+ */
+struct EvidenceBlockTable {
+  const int32_t* origins;    ///< index of the block's first cell; 0, of unknown cells, where none is stored
+  const uint64_t* surfaces;  ///< EvidenceLevel::Block::surface, 0 where none is stored
+  int stride;
+  const EvidenceCell* cells;  ///< kStride × kStride cells of a block, row by row
+};
+
 /** The evidence of one submap at one resolution. Only blocks of 8 × 8 cells with something observed are
  * stored: a submap fills a tenth of its bounding box. Index coordinates (cell centres are integers) count
  * from the raster's cell (0, 0); everything outside the raster is unknown, so the interpolated fields are
@@ -90,16 +99,9 @@ class EvidenceLevel {
   };
   const std::vector<Block>& blocks() const { return blocks_; }
 
-  /** Where the blocks are, for look-ups at speed. `number` is 0 for blocks that aren't stored (cells there
-   * are unknown) and k + 1 for blocks()[k]; `surface` is the block's. (column, row) may lie kMargin blocks
-   * outside the raster. */
-  int number(int column, int row) const { return numbers_[tableIndex(column, row)]; }
-  uint64_t surface(int column, int row) const { return surfaces_[tableIndex(column, row)]; }
-
-  /** The kStride × kStride cells of a block, row by row. */
-  const EvidenceCell* cellsOf(int number) const {
-    return cells_.data() + static_cast<std::size_t>(number) * kStride * kStride;
-  }
+  /** Where the blocks are, counted from the one with the given cell, for look-ups at speed. Cells may lie
+   * kMargin blocks outside the raster. */
+  EvidenceBlockTable tableAt(int column, int row) const;
 
  private:
   void addBlock(const EvidenceRaster& raster, int block_column, int block_row);
@@ -111,7 +113,7 @@ class EvidenceLevel {
 
   double x0_ = 0, y0_ = 0, resolution_ = 1;
   std::size_t table_columns_ = 0, table_rows_ = 0;
-  std::vector<int32_t> numbers_;    // row by row
+  std::vector<int32_t> origins_;    // row by row
   std::vector<uint64_t> surfaces_;  // row by row
   std::vector<Block> blocks_;
   std::vector<EvidenceCell> cells_;  // block by block, the first one unknown

@@ -24,103 +24,73 @@ std::size_t forBlocksOfTiles(const std::vector<Tile>& tiles, Sum sum) {
   return blocks;
 }
 
-/** The sums of a block of tiles, with the pairs' blocks found by index. */
-class TileSums {
- public:
-  explicit TileSums(std::size_t frames) : total_(frames), index_(frames * frames, -1) {}
-
-  template <class Scalar>
-  void add(const TileKernel<Scalar>& kernel, const Tile& tile);
-
-  ReducedSystem total() const;
-
- private:
-  Eigen::Matrix3d& block(std::size_t i, std::size_t k);
-
-  ReducedSystem total_;  // without the pairs' blocks
-  std::vector<int> index_;
-  std::vector<std::pair<PosePair, Eigen::Matrix3d>> blocks_;
-};
-
-Eigen::Matrix3d& TileSums::block(std::size_t i, std::size_t k) {
-  int& index = index_[i * total_.system.frames() + k];
-  if (index < 0) {
-    index = static_cast<int>(blocks_.size());
-    blocks_.emplace_back(PosePair{i, k}, Eigen::Matrix3d::Zero());
-  }
-  return blocks_[static_cast<std::size_t>(index)].second;
+/** From motions in the global map frame to what the rows J of LaneKernel are about. */
+Eigen::Matrix3d globalToCells(const PlacedLevel& placed, double heading) {
+  const double per_metre = 1 / placed.level().resolution();
+  return Eigen::Vector3d(-per_metre, -per_metre, 1).asDiagonal() * globalToLocalMotion(heading);
 }
 
-template <class Scalar>
-void TileSums::add(const TileKernel<Scalar>& kernel, const Tile& tile) {
-  total_.cost += kernel.cost();
-  total_.energy += kernel.energy();
-  total_.observations += kernel.observations();
-  total_.cells += kernel.cells();
-  for (std::size_t a = 0; a < tile.members.size(); ++a) {
-    if (!kernel.contributes(a)) continue;
-    const std::size_t i = tile.members[a].submap;
-    total_.system.gradient[i] += kernel.gradient(a);
-    for (std::size_t b = a; b < tile.members.size(); ++b)
-      if (kernel.contributes(b)) block(i, tile.members[b].submap) += kernel.block(a, b);
-  }
+Eigen::Matrix3d blockOf(const OwnSums& sums) {
+  const auto at = [&sums](std::size_t k) { return total(sums.block[k]); };
+  Eigen::Matrix3d block;
+  block << at(0), at(1), at(2), at(1), at(3), at(4), at(2), at(4), at(5);
+  return block;
 }
 
-ReducedSystem TileSums::total() const {
-  ReducedSystem total = total_;
-  for (const auto& [pair, block] : blocks_) total.system.addBlock(pair.first, pair.second, block);
-  return total;
+Eigen::Matrix3d blockOf(const LinkSums& sums) {
+  Eigen::Matrix3d block;
+  for (std::size_t k = 0; k < sums.size(); ++k)
+    block(static_cast<Eigen::Index>(k / 3), static_cast<Eigen::Index>(k % 3)) = -total(sums[k]);
+  return block;
 }
 
-/** From motions along the submaps' own axes to motions in the global map frame. */
-PoseSystem toGlobal(const PoseSystem& local, const Frames& frames) {
-  PoseSystem global(frames.size());
-  std::vector<Eigen::Matrix3d> motions;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    motions.push_back(globalToLocalMotion(frames[i].phi));
-    global.gradient[i] = motions[i].transpose() * local.gradient[i];
+Eigen::Vector3d gradientOf(const OwnSums& sums) {
+  return {total(sums.gradient[0]), total(sums.gradient[1]), total(sums.gradient[2])};
+}
+
+void addTo(ReducedSystem& reduced, const TileSums& sums, const std::vector<Eigen::Matrix3d>& motions) {
+  reduced.observations += sums.observations;
+  reduced.cells += sums.cells;
+  const auto addBlock = [&](std::size_t i, std::size_t k, const Eigen::Matrix3d& block) {
+    if (!block.isZero(0)) reduced.system.addBlock(i, k, motions[i].transpose() * block * motions[k]);
+  };
+  for (const auto& [i, own] : sums.own()) {
+    reduced.cost += total(own.cost);
+    reduced.energy += total(own.energy);
+    reduced.system.gradient[i] += motions[i].transpose() * gradientOf(own);
+    addBlock(i, i, blockOf(own));
   }
-  for (const auto& [pair, block] : local.blocks)
-    if (!block.isZero(0))
-      global.addBlock(pair.first, pair.second,
-                      motions[pair.first].transpose() * block * motions[pair.second]);
-  return global;
+  for (const auto& [i, k, link] : sums.links()) addBlock(i, k, blockOf(link));
 }
 
 }  // namespace
 
-void ReducedSystem::add(const ReducedSystem& other) {
-  cost += other.cost;
-  energy += other.energy;
-  observations += other.observations;
-  cells += other.cells;
-  system.add(other.system, 1);
-}
-
 template <class Scalar>
-ReducedSystem reduce(const PlacedLevels& placed, const Frames& frames, JacobianKind jacobian) {
+ReducedSystem reduce(const PlacedLevels& placed, const Frames& frames, JacobianKind jacobian,
+                     InstructionSet instructions) {
   std::vector<TileSums> sums(kBlocks, TileSums(frames.size()));
-  tbb::enumerable_thread_specific<TileKernel<Scalar>> kernels(jacobian);  // working memory only
+  tbb::enumerable_thread_specific<TileKernel<Scalar>> kernels(jacobian, laneKernel<Scalar>(instructions));
   const auto sum_tiles = [&](std::size_t block, std::size_t begin, std::size_t end) {
     TileKernel<Scalar>& kernel = kernels.local();
-    for (std::size_t t = begin; t < end; ++t)
-      if (kernel.evaluate(placed.tiles[t], placed)) sums[block].add(kernel, placed.tiles[t]);
+    for (std::size_t t = begin; t < end; ++t) kernel.add(placed.tiles[t], placed, sums[block]);
   };
   const std::size_t blocks = forBlocksOfTiles(placed.tiles, sum_tiles);
-  ReducedSystem total(frames.size());
-  for (std::size_t block = 0; block < blocks; ++block) total.add(sums[block].total());
-  total.system = toGlobal(total.system, frames);
-  return total;
+  std::vector<Eigen::Matrix3d> motions;
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    motions.push_back(globalToCells(placed.submaps[i], frames[i].phi));
+  ReducedSystem reduced(frames.size());
+  for (std::size_t block = 0; block < blocks; ++block) addTo(reduced, sums[block], motions);
+  return reduced;
 }
 
-template ReducedSystem reduce<float>(const PlacedLevels&, const Frames&, JacobianKind);
-template ReducedSystem reduce<double>(const PlacedLevels&, const Frames&, JacobianKind);
+template ReducedSystem reduce<float>(const PlacedLevels&, const Frames&, JacobianKind, InstructionSet);
+template ReducedSystem reduce<double>(const PlacedLevels&, const Frames&, JacobianKind, InstructionSet);
 
 double overlapWeight(const PlacedLevels& placed, int stride) {
   const auto weightAt = [&placed](const Tile& tile, int a, int b) {
     double ww = 0, w4 = 0;
-    for (const TileMember& member : tile.members) {
-      const PlacedLevel& submap = placed.submaps[member.submap];
+    for (std::size_t k = tile.first_member; k < tile.first_member + tile.members; ++k) {
+      const PlacedLevel& submap = placed.submaps[placed.members[k].submap];
       const double hits = submap.level().sample(submap.columnOf(a, b), submap.rowOf(a, b)).hits;
       ww += hits * hits, w4 += hits * hits * hits * hits;
     }

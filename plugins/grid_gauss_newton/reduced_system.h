@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "jacobian.h"
+#include "lane_kernel.h"
 #include "lattice.h"
 #include "pose_system.h"
 
@@ -21,8 +22,6 @@ struct ReducedSystem {
   std::size_t cells = 0;         ///< cells in the sums
 
   PoseSystem system;  ///< J^T(I − ww^T/W)J and J^T(L − w m)
-
-  void add(const ReducedSystem& other);
 };
 
 /** Evaluates cost and normal equations at the given frames, one (1×3) row J_i per cell and submap:
@@ -32,10 +31,12 @@ struct ReducedSystem {
  * @tparam Scalar of look-ups and of the sums within a tile of the lattice, float (half the time) or double;
  * tiles are always added up in double */
 template <class Scalar>
-ReducedSystem reduce(const PlacedLevels& placed, const Frames& frames, JacobianKind jacobian);
+ReducedSystem reduce(const PlacedLevels& placed, const Frames& frames, JacobianKind jacobian,
+                     InstructionSet instructions = bestInstructionSet());
 
-extern template ReducedSystem reduce<float>(const PlacedLevels&, const Frames&, JacobianKind);
-extern template ReducedSystem reduce<double>(const PlacedLevels&, const Frames&, JacobianKind);
+extern template ReducedSystem reduce<float>(const PlacedLevels&, const Frames&, JacobianKind, InstructionSet);
+extern template ReducedSystem reduce<double>(const PlacedLevels&, const Frames&, JacobianKind,
+                                             InstructionSet);
 
 /** Σ_j Σ_{i<k} w_i² w_k² / Σ w² over all cells: the weight with which differences of two submaps enter the
  * cost. cost / overlapWeight is the mean squared difference of log-odds per hit, comparable between frames

@@ -1,77 +1,73 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "jacobian.h"
+#include "lane_kernel.h"
 #include "lattice.h"
 
 namespace submap_slam::grid_joining {
 
-/** Cost and normal equations of one tile, in the submaps' own axes (localJacobian). Plain loops over arrays,
- * one array per quantity, so that the compiler can work on several cells at once; the working memory is kept
- * from tile to tile. */
+/** Sums over tiles, for each submap and each pair of submaps that meet in one of them. */
+class TileSums {
+ public:
+  explicit TileSums(std::size_t submaps) : rows_(submaps) {}
+
+  std::size_t observations = 0, cells = 0;  ///< in the sums
+
+  struct Own {
+    std::size_t submap;
+    OwnSums sums{};
+  };
+  struct Link {
+    std::size_t i, k;  ///< i < k
+    LinkSums sums{};
+  };
+  const std::vector<Own>& own() const { return own_; }
+  const std::vector<Link>& links() const { return links_; }
+
+  /** References are valid until the next call. */
+  OwnSums& own(std::size_t submap);
+  LinkSums& link(std::size_t i, std::size_t k);
+
+ private:
+  /** Where the sums of a submap and of its pairs (submap, k) are; pairs are few, so they are searched. */
+  struct Row {
+    int own = -1;
+    std::vector<std::pair<std::size_t, std::size_t>> links;  ///< k and the index in links_
+  };
+  std::vector<Row> rows_;
+  std::vector<Own> own_;
+  std::vector<Link> links_;
+};
+
+/** Cost and normal equations of tiles, J as in LaneKernel. The working memory is kept from tile to tile. */
 template <class Scalar>
 class TileKernel {
  public:
-  explicit TileKernel(JacobianKind jacobian) : jacobian_(jacobian) {}
+  TileKernel(JacobianKind jacobian, const LaneKernel<Scalar>& loops) : jacobian_(jacobian), loops_(loops) {}
 
-  /** Sums up the tile; false if nothing in it counts. */
-  bool evaluate(const Tile& tile, const PlacedLevels& placed);
-
-  double cost() const { return cost_; }
-  double energy() const { return energy_; }
-  std::size_t observations() const { return observations_; }
-  std::size_t cells() const { return cells_; }
-
-  /** J^T(L − w m) of a member of the tile. */
-  Eigen::Vector3d gradient(std::size_t member) const;
-
-  /** J_iᵀ(δ_ik − w_i w_k/W) J_k of two members, i ≤ k. */
-  Eigen::Matrix3d block(std::size_t i, std::size_t k) const;
-
-  /** Whether any row J_i of the member is not zero. */
-  bool contributes(std::size_t member) const { return contributes_[member]; }
+  /** Adds what the tile shows to the sums. */
+  void add(const Tile& tile, const PlacedLevels& placed, TileSums& sums);
 
  private:
-  static constexpr int kCells = kTile * kTile;
-
-  /** Not a power of two, or the same cell of all arrays would fall into the same lines of the cache. */
-  static constexpr int kPaddedCells = kCells + 16;
-  using Row = std::array<Scalar, kPaddedCells>;
-  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
-
-  /** What one submap shows at the listed cells. */
-  struct Member {
-    Row log_odds, hits;
-    std::array<Row, 2> log_odds_gradient, hits_gradient;  ///< per metre
-    std::array<Row, 2> point;                             ///< in the local map frame (m)
-  };
-
-  void listCells(const Tile& tile, const PlacedLevels& placed);
-  void markSurface(const Tile& tile, const PlacedLevel& submap);
-  void makeRoom(std::size_t members);
-  void sample(const Tile& tile, const PlacedLevel& submap, Member& member) const;
-  void reduceMap();
-  void linearise(std::size_t i);
+  bool allMarked() const;
+  void listPoints();
+  const Row<Scalar>& shareOf(const MemberRows<Scalar>& member);
 
   JacobianKind jacobian_;
-  std::size_t count_ = 0;  ///< members of this tile; there is room for more
-  std::vector<Member> members_;
-  std::vector<bool> contributes_;
+  const LaneKernel<Scalar>& loops_;
 
-  std::array<uint8_t, kCells> marked_{};
-  std::array<uint8_t, kCells> a_{}, b_{};  ///< lattice points of the listed cells, from the tile's first one
-  Eigen::Index listed_ = 0;                ///< how many
+  std::vector<TileView<Scalar>> views_;
+  std::vector<MemberRows<Scalar>> members_;  ///< of this tile; there may be more, from another one
+  std::vector<bool> moves_;                  ///< whether any row J of the member is not zero
 
-  Row valid_, joint_value_, inverse_root_;  ///< 1 or 0; m; 1/√W
-  Matrix residual_;                         ///< L − w m: cells × members
-  Matrix jacobian_rows_, weighted_rows_;    ///< J and w J / √W: cells × 3 members
-  Matrix linked_;                           ///< Σ w_i w_k / W · J_iᵀ J_k, lower triangle
-  double cost_ = 0, energy_ = 0;
-  std::size_t observations_ = 0, cells_ = 0;
+  std::array<uint8_t, kTilePoints> marked_{};
+  PointList<Scalar> points_{};
+  MapRows<Scalar> map_{};
+  alignas(64) Row<Scalar> share_{};
 };
 
 extern template class TileKernel<float>;

@@ -6,7 +6,9 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "grid_gauss_newton/chain_prior.h"
+#include "grid_gauss_newton/constraint_prior.h"
+#include "grid_gauss_newton/jacobian.h"
+#include "grid_gauss_newton/observability.h"
 #include "synthetic_submaps.h"
 
 namespace submap_slam {
@@ -36,6 +38,7 @@ class GridGaussNewtonPlugin : public ::testing::Test {
   JoinedMap join(const GridSubmaps& submaps, const PoseList& start) const {
     JoinedMap initial;
     initial.frames = asGaussians(start);
+    initial.constraints = chainSubmaps(submaps).constraints;
     joiner->validate();
     return joiner->join(submaps, initial, {});
   }
@@ -154,6 +157,27 @@ TEST_F(GridGaussNewtonPlugin, CovarianceAlongACorridorIsNearlyThatOfTheChain) {
   EXPECT_LT(joined.frames[1].cov(1, 1), 0.1 * 0.02 * 0.02);
 }
 
+TEST_F(GridGaussNewtonPlugin, NamesTheDirectionThatACorridorLeavesOpen) {
+  const CorridorProblem p(0);
+  const JoinedMap joined = join(p.submaps, p.truth);
+  EXPECT_THAT(joined.reason, ::testing::HasSubstr("evidence leaves open submap"));
+  EXPECT_THAT(joined.reason, ::testing::HasSubstr("and 1 more"));
+  EXPECT_THAT(joined.reason, ::testing::Not(::testing::HasSubstr("heading")));
+  EXPECT_THAT(joined.reason, ::testing::Not(::testing::HasSubstr("groups")));
+
+  parameters.set("grid_gauss_newton", "prior_weight", "0");
+  const JoinedMap free = join(p.submaps, p.truth);
+  EXPECT_THAT(free.reason, ::testing::ContainsRegex("submap 1 along [0-9] deg \\(sigma 0.1 m\\)"))
+      << "without the chain";
+}
+
+TEST_F(GridGaussNewtonPlugin, LeavesNothingOpenInARoom) {
+  const RoomProblem p;
+  testing::linkChain(p.submaps, p.truth, 0.5, 0.1);
+  const JoinedMap joined = join(p.submaps, p.truth);
+  EXPECT_THAT(joined.reason, ::testing::Not(::testing::HasSubstr("open")));
+}
+
 TEST_F(GridGaussNewtonPlugin, CovariancesArePositiveAndGrowWithLessEvidence) {
   const RoomProblem p;
   const JoinedMap joined = join(p.submaps, p.truth);
@@ -170,9 +194,40 @@ TEST_F(GridGaussNewtonPlugin, CovariancesArePositiveAndGrowWithLessEvidence) {
   EXPECT_NEAR(doubtful.frames[1].cov(0, 0), 4 * joined.frames[1].cov(0, 0), 0.1 * joined.frames[1].cov(0, 0));
 }
 
+/** A sheet of 32 × 32 submaps that was driven row by row, forth and back. */
+TEST_F(GridGaussNewtonPlugin, JoinsAThousandSubmaps) {
+  constexpr int kSide = 32;
+  PoseList truth;
+  for (int row = 0; row < kSide; ++row)
+    for (int k = 0; k < kSide; ++k) {
+      const double i = static_cast<double>(truth.size());
+      truth.emplace_back(3.0 * (row % 2 ? kSide - 1 - k : k), 3.0 * row, truth.empty() ? 0 : 3 * std::sin(i));
+    }
+  GridSubmaps submaps;
+  PoseList start = truth;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    submaps.push_back(testing::landscapeSubmap(truth[i], 2, 0.2));
+    const double k = static_cast<double>(i);
+    if (i > 0)
+      start[i] = start[i] + TPose2D(0.15 * std::sin(7 * k), 0.15 * std::cos(5 * k), 0.03 * std::sin(3 * k));
+  }
+  testing::linkChain(submaps, truth, 0.02, 0.01);
+  parameters.set("grid_gauss_newton", "levels", "2");  // the submaps are small
+  const JoinedMap joined = join(submaps, start);
+  EXPECT_EQ(joined.status, JoinStatus::kConverged) << joined.reason;
+  double worst_step = 0;
+  for (std::size_t i = 1; i < truth.size(); ++i) {
+    const TPose2D step = frameOf(joined, i) - frameOf(joined, i - 1), true_step = truth[i] - truth[i - 1];
+    worst_step = std::max(worst_step, distance(step, true_step));
+    ASSERT_GT(joined.frames[i].cov(0, 0), 0) << i;
+  }
+  EXPECT_LT(worst_step, 0.03) << "from up to 0.3 m";
+}
+
 TEST_F(GridGaussNewtonPlugin, OneSubmapIsNothingToJoin) {
   const JoinedMap joined = join({renderSubmap(testing::room(), {0, 0, 0}, 2, 0.1)}, {{0, 0, 0}});
   EXPECT_EQ(joined.status, JoinStatus::kNothingToJoin);
+  EXPECT_EQ(joined.reason, "there is only one submap");
   expectSameFrames(joined, {{0, 0, 0}});
 }
 
@@ -190,7 +245,10 @@ TEST_F(GridGaussNewtonPlugin, GroupsWithoutLinkAreJoinedEachForItself) {
   const PoseList truth{{0, 0, 0}, {0.8, 0.3, 0.2}};
   GridSubmaps submaps;
   for (int group = 0; group < 2; ++group)
-    for (const TPose2D& frame : truth) submaps.push_back(renderSubmap(testing::room(), frame, 4, 0.1));
+    for (const TPose2D& frame : truth) {
+      submaps.push_back(renderSubmap(testing::room(), frame, 4, 0.1));
+      submaps.back()->id = static_cast<uint32_t>(submaps.size()) - 1;
+    }
   const TPose2D away(50, -20, 1.1), error(0.05, -0.03, 0.01);
   const JoinedMap joined =
       join(submaps, {truth[0], truth[1] + error, away + truth[0], away + truth[1] + error});
@@ -198,12 +256,20 @@ TEST_F(GridGaussNewtonPlugin, GroupsWithoutLinkAreJoinedEachForItself) {
   EXPECT_LT(distance(frameOf(joined, 1), truth[1]), 0.01);
   EXPECT_EQ(frameOf(joined, 2), away + truth[0]);
   EXPECT_LT(distance(frameOf(joined, 3), away + truth[1]), 0.01);
+  EXPECT_THAT(joined.reason, ::testing::HasSubstr("2 groups that nothing links"));
+  EXPECT_THAT(joined.reason, ::testing::HasSubstr("{0-1} {2-3}"));
 }
 
 TEST_F(GridGaussNewtonPlugin, DifferentResolutionsAreRefused) {
   const GridSubmaps submaps{renderSubmap(testing::room(), {0, 0, 0}, 3, 0.1),
                             renderSubmap(testing::room(), {0, 0, 0}, 3, 0.05)};
-  EXPECT_THROW(join(submaps, {{0, 0, 0}, {0, 0, 0}}), InputError);
+  try {
+    join(submaps, {{0, 0, 0}, {0, 0, 0}});
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("has cells of 0.05"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("expected 0.1"));
+  }
 }
 
 TEST_F(GridGaussNewtonPlugin, SameBitsForAnyNumberOfThreads) {
@@ -244,8 +310,41 @@ TEST_F(GridGaussNewtonPlugin, KeepsConstraintsAndStopsOnRequest) {
   EXPECT_EQ(joined.constraints[1].to, 7u);
 }
 
-TEST(ChainPrior, GradientAndMatrixAreDerivativesOfItsCost) {
+/** Two frames: the evidence holds the second one along y and its heading, the chain all of it. */
+TEST(OpenDirections, AreThoseThatTheEvidenceAloneDoesNotHold) {
+  using namespace grid_joining;
+  Evaluation evaluation{ReducedSystem(2), PoseSystem(2), PoseSystem(2)};
+  const double turn = 0.3;
+  const auto link = [&](PoseSystem& system, const Eigen::Vector3d& sigmas) {
+    const Eigen::Matrix3d axes = globalToLocalMotion(turn);
+    const Eigen::Vector3d information = sigmas.cwiseAbs2().cwiseInverse();
+    const Eigen::Matrix3d block = axes.transpose() * information.asDiagonal() * axes;
+    system.addBlock(0, 0, block);
+    system.addBlock(0, 1, -block);
+    system.addBlock(1, 1, block);
+  };
+  link(evaluation.evidence.system, {10, 0.01, 0.001});
+  link(evaluation.prior, {0.2, 0.2, 0.1});
+  evaluation.total.add(evaluation.prior, 1);
+  evaluation.total.add(evaluation.evidence.system, 1);
+  const auto covariances = marginalCovariances(evaluation.total, {true, false}, Eigen::VectorXd::Zero(6));
+  ASSERT_TRUE(covariances);
+  const auto open = openDirections(evaluation, 1, *covariances, 0.05);
+  ASSERT_EQ(open.size(), 1u);
+  EXPECT_EQ(open[0].submap, 1u);
+  EXPECT_FALSE(open[0].heading);
+  EXPECT_NEAR(open[0].direction, turn, 1e-3);
+  EXPECT_NEAR(open[0].sigma, 0.2, 1e-3);
+  EXPECT_EQ(describeOpen(open, {4, 7}), "evidence leaves open submap 7 along 17 deg (sigma 0.2 m)");
+  EXPECT_EQ(describeOpen({}, {4, 7}), "");
+  EXPECT_EQ(describeGroups({0, 0}, {4, 7}), "");
+  EXPECT_EQ(describeGroups({0, 0, 2, 0, 2}, {4, 5, 6, 7, 8}),
+            "2 groups that nothing links, each joined for itself: {4-5, 7} {6, 8}");
+}
+
+TEST(ConstraintPrior, GradientAndMatrixAreDerivativesOfItsCost) {
   GridSubmaps submaps{GridSubmap::Create(), GridSubmap::Create(), GridSubmap::Create()};
+  submaps[1]->id = 1, submaps[2]->id = 2;
   submaps[0]->has_successor = submaps[1]->has_successor = true;
   submaps[0]->end_pose.mean = mrpt::poses::CPose2D(1.0, 0.2, 3.0);
   submaps[1]->end_pose.mean = mrpt::poses::CPose2D(0.4, -0.6, -0.5);
@@ -253,7 +352,7 @@ TEST(ChainPrior, GradientAndMatrixAreDerivativesOfItsCost) {
   cov << 0.04, 0.01, 0.002, 0.01, 0.09, -0.003, 0.002, -0.003, 0.01;
   submaps[0]->end_pose.cov = cov;
   submaps[1]->end_pose.cov = cov;
-  const grid_joining::ChainPrior prior(submaps, 2.5);
+  const grid_joining::ConstraintPrior prior(chainSubmaps(submaps).constraints, submaps, 2.5);
   const grid_joining::Frames frames{{0, 0, 0.4}, {0.7, 0.9, -2.8}, {0.9, 1.8, 2.9}};
   const auto system = prior.linearise(frames);
   const double h = 1e-6;
@@ -265,7 +364,7 @@ TEST(ChainPrior, GradientAndMatrixAreDerivativesOfItsCost) {
         (2 * h);
     EXPECT_NEAR(2 * system.denseGradient()[k], difference, 1e-6 * (1 + std::abs(difference)));
   }
-  EXPECT_EQ(grid_joining::ChainPrior(submaps, 0).cost(frames), 0);
+  EXPECT_EQ(grid_joining::ConstraintPrior(chainSubmaps(submaps).constraints, submaps, 0).cost(frames), 0);
 
   // At the prior's own optimum J^T Omega J is half the Hessian: check it along a direction.
   const grid_joining::Frames exact{

@@ -99,7 +99,7 @@ TEST(EvidenceLevel, SurfaceBitsSayWhereALookUpSeesMoreThanBackground) {
   // The raster's cell (8, 3) is above the background: look-ups from four cells reach it.
   for (int r = 0; r < 6; ++r)
     for (int c = 0; c < 16; ++c) {
-      const bool bit = level.surface(c, r) >> (8 * (r % 8) + c % 8) & 1;
+      const bool bit = *level.tableAt(c, r).surfaces >> (8 * (r % 8) + c % 8) & 1;
       EXPECT_EQ(bit, (c == 7 || c == 8) && (r == 2 || r == 3)) << c << " " << r;
     }
 }

@@ -20,6 +20,16 @@ double distanceTo(const World& world, double x, double y) {
   return nearest;
 }
 
+/** Whether the wall stands between two points. */
+bool hides(const Wall& wall, const mrpt::math::TPoint2D& from, const mrpt::math::TPoint2D& to) {
+  const double dx = to.x - from.x, dy = to.y - from.y, wx = wall.x1 - wall.x0, wy = wall.y1 - wall.y0;
+  const double cross = dx * wy - dy * wx;
+  if (cross == 0) return false;
+  const double along_ray = ((wall.x0 - from.x) * wy - (wall.y0 - from.y) * wx) / cross;
+  const double along_wall = ((wall.x0 - from.x) * dy - (wall.y0 - from.y) * dx) / cross;
+  return along_ray > 0 && along_ray < 1 && along_wall > 0 && along_wall < 1;
+}
+
 /** Portable: the standard distributions differ between libraries. */
 double uniform(std::mt19937& generator) { return static_cast<double>(generator()) / 4294967296.0; }
 
@@ -79,6 +89,35 @@ void linkChain(const GridSubmaps& submaps, const std::vector<mrpt::math::TPose2D
     submaps[k]->end_pose.cov(0, 0) = submaps[k]->end_pose.cov(1, 1) = sigma_m * sigma_m;
     submaps[k]->end_pose.cov(2, 2) = sigma_rad * sigma_rad;
   }
+}
+
+GridSubmap::Ptr scanSubmap(const World& world, const mrpt::math::TPose2D& T_w_s, double range,
+                           double resolution, double noise, uint32_t seed) {
+  constexpr double kIntoWall = 0.15;  // m of a ray that goes on behind the surface
+  auto submap = renderSubmap(world, T_w_s, range, resolution, noise, seed);
+  EvidenceGrid& grid = submap->evidence;
+  for (unsigned cy = 0; cy < grid.sizeY(); ++cy)
+    for (unsigned cx = 0; cx < grid.sizeX(); ++cx) {
+      const mrpt::math::TPoint2D cell(grid.log_odds.idx2x(static_cast<int>(cx)),
+                                      grid.log_odds.idx2y(static_cast<int>(cy)));
+      const double seen = std::max(0.0, 1 - kIntoWall / std::max(cell.norm(), kIntoWall));
+      const auto from = T_w_s.composePoint({0, 0}), to = T_w_s.composePoint(cell * seen);
+      if (std::any_of(world.begin(), world.end(), [&](const Wall& wall) { return hides(wall, from, to); }))
+        *grid.log_odds.cellByIndex(cx, cy) = *grid.hits.cellByIndex(cx, cy) = 0;
+    }
+  return submap;
+}
+
+GridSubmap::Ptr landscapeSubmap(const mrpt::math::TPose2D& T_w_s, double range, double resolution) {
+  auto submap = GridSubmap::Create();
+  submap->evidence = EvidenceGrid(-range, range, -range, range, resolution);
+  fill(submap->evidence, [&](double x, double y) {
+    const mrpt::math::TPoint2D p = T_w_s.composePoint({x, y});
+    const double log_odds = std::sin(0.9 * p.x + 0.4 * p.y) + std::sin(-0.5 * p.x + 1.1 * p.y) +
+                            std::sin(1.3 * p.x + 2 * std::sin(0.4 * p.y));
+    return std::pair(log_odds, 5.0);
+  });
+  return submap;
 }
 
 GridSubmap::Ptr randomSubmap(uint32_t seed, double width, double height, double resolution) {

@@ -25,6 +25,13 @@ World corridor(double length);
 GridSubmap::Ptr renderSubmap(const World& world, const mrpt::math::TPose2D& T_w_s, double range,
                              double resolution, double noise = 0, uint32_t seed = 0);
 
+/** The same, but cells behind walls are unknown. */
+GridSubmap::Ptr scanSubmap(const World& world, const mrpt::math::TPose2D& T_w_s, double range,
+                           double resolution, double noise = 0, uint32_t seed = 0);
+
+/** Evidence of hills and valleys without end that never repeat, all of it seen: cheap, for many submaps. */
+GridSubmap::Ptr landscapeSubmap(const mrpt::math::TPose2D& T_w_s, double range, double resolution);
+
 /** Links each submap to the next by the true relative pose with the given standard deviations, and numbers
  * them. */
 void linkChain(const GridSubmaps& submaps, const std::vector<mrpt::math::TPose2D>& true_frames,

@@ -1,40 +1,46 @@
-#include "chain_prior.h"
+#include "constraint_prior.h"
 
 #include <mrpt/math/wrap2pi.h>
 
 #include <cmath>
+#include <cstdint>
+#include <map>
 
 #include "jacobian.h"
 
 namespace submap_slam::grid_joining {
 namespace {
 
-/** No end pose is believed beyond 1 mm and 0.1 mrad; it also makes covariances without noise in some
+/** No constraint is believed beyond 1 mm and 0.1 mrad; it also makes covariances without noise in some
  * direction regular. */
 const Eigen::Vector3d kSmallestVariance(1e-6, 1e-6, 1e-8);
 
 }  // namespace
 
-ChainPrior::ChainPrior(const GridSubmaps& submaps, double weight) {
+ConstraintPrior::ConstraintPrior(const std::vector<Constraint>& constraints, const GridSubmaps& submaps,
+                                 double weight) {
   if (weight <= 0) return;
-  for (std::size_t k = 0; k + 1 < submaps.size(); ++k) {
-    const GridSubmap& submap = *submaps[k];
-    if (!submap.has_successor) continue;
-    Eigen::Matrix3d covariance = submap.end_pose.cov.asEigen();
+  std::map<uint32_t, std::size_t> frame_of;
+  for (std::size_t k = 0; k < submaps.size(); ++k) frame_of.emplace(submaps[k]->id, k);
+  for (const Constraint& constraint : constraints) {
+    const auto from = frame_of.find(constraint.from), to = frame_of.find(constraint.to);
+    if (!constraint.accepted || from == frame_of.end() || to == frame_of.end()) continue;
+    Eigen::Matrix3d covariance = constraint.T_a_b.cov.asEigen();
     covariance.diagonal() += kSmallestVariance;
     const Eigen::Matrix3d information = weight * covariance.inverse();
-    links_.push_back({k, submap.end_pose.mean.asTPose(), 0.5 * (information + information.transpose())});
+    links_.push_back({from->second, to->second, constraint.T_a_b.mean.asTPose(),
+                      0.5 * (information + information.transpose())});
   }
 }
 
-Eigen::Vector3d ChainPrior::residual(const Link& link, const Frames& frames) {
-  const auto &a = frames[link.from], &b = frames[link.from + 1];
+Eigen::Vector3d ConstraintPrior::residual(const Link& link, const Frames& frames) {
+  const auto &a = frames[link.from], &b = frames[link.to];
   const Eigen::Vector3d seen =
       globalToLocalMotion(a.phi) * Eigen::Vector3d(b.x - a.x, b.y - a.y, b.phi - a.phi);
   return {seen.x() - link.T_a_b.x, seen.y() - link.T_a_b.y, mrpt::math::wrapToPi(seen.z() - link.T_a_b.phi)};
 }
 
-double ChainPrior::cost(const Frames& frames) const {
+double ConstraintPrior::cost(const Frames& frames) const {
   double sum = 0;
   for (const Link& link : links_) {
     const Eigen::Vector3d e = residual(link, frames);
@@ -43,10 +49,10 @@ double ChainPrior::cost(const Frames& frames) const {
   return sum;
 }
 
-PoseSystem ChainPrior::linearise(const Frames& frames) const {
+PoseSystem ConstraintPrior::linearise(const Frames& frames) const {
   PoseSystem system(frames.size());
   for (const Link& link : links_) {
-    const std::size_t i = link.from, k = i + 1;
+    const std::size_t i = link.from, k = link.to;
     const Eigen::Vector3d e = residual(link, frames);
     const Eigen::Matrix3d to = globalToLocalMotion(frames[i].phi);
     Eigen::Matrix3d from = -to;
