@@ -161,6 +161,20 @@ TEST(GridMapper, MatchScoresAreShares) {
   }
 }
 
+TEST(GridMapper, ASubmapThatSawNothingHasTheResolutionOfTheOthers) {
+  std::vector<Frame> frames = simulateRoute(roomWorld(), 3, {}, 1).frames;
+  for (auto& frame : frames) {
+    const auto blind = mrpt::obs::CObservation2DRangeScan::Create(*frame.scans.front());
+    for (std::size_t i = 0; i < blind->getScanSize(); ++i) blind->setScanRangeValidity(i, false);
+    frame.scans = {blind};
+  }
+  for (const auto& submap : mapLog(frames, {})) {
+    EXPECT_EQ(submap->evidence.resolution(), EvidenceParams{}.resolution);
+    EXPECT_EQ(submap->evidence.observedCells(), 0u);
+    EXPECT_EQ(submap->statistics.closed_because, "log ended");
+  }
+}
+
 TEST(GridMapper, EndCovarianceIsPositiveDefinite) {
   for (const auto& submap : roomSubmaps()) {
     const Eigen::Matrix3d cov = submap->end_pose.cov.asEigen();

@@ -83,6 +83,19 @@ TEST(ParticleFilter, KeyScansAreTakenByDistanceAndByTurn) {
   EXPECT_EQ(keys, (std::vector<bool>{true, false, false, true, false, true}));
 }
 
+TEST(ParticleFilter, ScansThatSeeNothingFollowOdometryAndRaiseNoDoubt) {
+  ParticleFilter filter({}, 1);
+  driveThroughRoom(filter, 15);
+  const LaserPoints nothing;
+  TPose2D expected = filter.best().path.back().pose;
+  for (int i = 0; i < 30; ++i, expected = expected + TPose2D(0.1, 0, 0))
+    filter.step(nothing, TPose2D(0.1, 0, 0));
+  EXPECT_EQ(filter.size(), 1u);
+  EXPECT_EQ(filter.rescues(), 0u);
+  EXPECT_LT(distance(filter.best().path.back().pose, expected), 1e-9);
+  EXPECT_GT(filter.best().path.back().inlier_share, 0.8f);
+}
+
 TEST(ParticleFilter, EmptyScansAreNeverKeyScans) {
   ParticleFilter filter({}, 1);
   for (int i = 0; i < 5; ++i) filter.step({}, TPose2D(1, 0, 0));

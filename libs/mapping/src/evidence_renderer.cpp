@@ -108,8 +108,9 @@ EvidenceGrid renderEvidence(const std::vector<PlacedScan>& scans, const Evidence
       bounds.add(from);
       bounds.add(to);
     });
-  if (bounds.min.x() > bounds.max.x()) return {};
-  const double r = params.resolution, margin = 2 * r;
+  const double r = params.resolution;
+  if (bounds.min.x() > bounds.max.x()) return EvidenceGrid(0, r, 0, r, r);
+  const double margin = 2 * r;
   const auto down = [r](double v) { return std::floor(v / r) * r; };
   const auto up = [r](double v) { return std::ceil(v / r) * r; };
   EvidenceGrid grid(down(bounds.min.x() - margin), up(bounds.max.x() + margin), down(bounds.min.y() - margin),

@@ -2,6 +2,7 @@
 
 #include <mrpt/math/wrap2pi.h>
 #include <mrpt/poses/CPose2D.h>
+#include <submap_slam/core/errors.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -95,7 +96,7 @@ class SubmapBuild {
   std::vector<TPose2D> refine(const Span& span, Filtered& filtered) const;
   GridSubmap::Ptr assemble(const Span& span, const Filtered& filtered,
                            const std::vector<TPose2D>& poses) const;
-  void advance(DriftCovariance& drift, const PathNode& before, const PathNode& node) const;
+  void advance(DriftCovariance& drift, const std::vector<PathNode>& path, std::size_t k) const;
   mrpt::math::CMatrixDouble33 endCovariance(const Span& span, const Filtered& filtered) const;
   std::size_t lastFrame(const Span& span) const { return span.has_successor ? span.end : span.end - 1; }
 
@@ -117,8 +118,7 @@ Filtered SubmapBuild::filter(Span& span) const {
     statistics.max_particles = std::max(statistics.max_particles, static_cast<uint32_t>(filter.size()));
     if (filter.size() > 1) ++statistics.ambiguous_scans;
     if (i <= span.first || i == lastFrame(span)) continue;
-    const auto& path = filter.best().path;
-    advance(drift, path[path.size() - 2], path.back());
+    advance(drift, filter.best().path, filter.best().path.size() - 1);
     const std::string reason = rules.check(filter, drift);
     if (reason.empty()) continue;
     statistics.closed_because = reason;
@@ -150,18 +150,21 @@ std::vector<TPose2D> SubmapBuild::refine(const Span& span, Filtered& filtered) c
   return poses;
 }
 
-void SubmapBuild::advance(DriftCovariance& drift, const PathNode& before, const PathNode& node) const {
-  drift.move(before.pose, node.pose);
-  if (!node.key) return;
-  const TPose2D step = node.pose - before.pose;
-  drift.addKeyScan(node.information, ParticleFilter::motionInformation(params_.filter.motion, step));
+/** Takes the step that ends at node k of the path. */
+void SubmapBuild::advance(DriftCovariance& drift, const std::vector<PathNode>& path, std::size_t k) const {
+  drift.move(path[k - 1].pose, path[k].pose);
+  if (!path[k].key) return;
+  std::size_t last_key = k - 1;
+  while (last_key > 0 && !path[last_key].key) --last_key;
+  const TPose2D since = path[k].pose - path[last_key].pose;
+  drift.addKeyScan(path[k].information, ParticleFilter::motionInformation(params_.filter.motion, since));
 }
 
 mrpt::math::CMatrixDouble33 SubmapBuild::endCovariance(const Span& span, const Filtered& filtered) const {
   const auto& path = filtered.particle.path;
   DriftCovariance drift(params_.drift);
   for (std::size_t i = span.first + 1; i <= lastFrame(span); ++i)
-    advance(drift, path[i - 1 - span.warm_up], path[i - span.warm_up]);
+    advance(drift, path, i - span.warm_up);
   // The path is in the filter's frame, which the warm-up began; turn the axes into the submap's.
   const double heading = path[span.first - span.warm_up].pose.phi;
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
@@ -209,8 +212,12 @@ GridSubmap::Ptr SubmapBuild::assemble(const Span& span, const Filtered& filtered
 
 }  // namespace
 
-RbpfGridMapper::RbpfGridMapper(const GridMapperParams& params, uint64_t seed)
-    : params_(params), seed_(seed) {}
+RbpfGridMapper::RbpfGridMapper(const GridMapperParams& params, uint64_t seed) : params_(params), seed_(seed) {
+  constexpr double kMostCells = 3.0;  // beyond, a surfel has more neighbours than it keeps
+  const SurfelMapParams& map = params.filter.map;
+  if (map.fit_radius > kMostCells * map.resolution * (1 + 1e-9))
+    throw ConfigError("[matcher] fit_radius must not exceed three times surfel_resolution");
+}
 
 std::vector<GridSubmap::Ptr> RbpfGridMapper::map(const Stretch& stretch) const {
   const double max_range = params_.max_range > 0 ? params_.max_range : 1e9;

@@ -9,9 +9,9 @@ constexpr Range kShare{0, 1};
 
 void describe(ParameterTable& table, SurfelMapParams& p) {
   table.add("surfel_resolution", p.resolution, "m", {0.005, 1}, "Cell size of the matching map");
-  table.add("search_radius", p.search_radius, "m", kPositive,
+  table.add("search_radius", p.search_radius, "m", {0.01, 2},
             "A beam is matched to the nearest surfel within this");
-  table.add("fit_radius", p.fit_radius, "m", kPositive,
+  table.add("fit_radius", p.fit_radius, "m", {0.01, 1},
             "A surfel's line is fitted to the surfels within this");
 }
 
@@ -24,10 +24,10 @@ void describe(ParameterTable& table, MatcherParams& p) {
 }
 
 void describe(ParameterTable& table, CorrelativeSearchParams& p) {
-  table.add("window_xy", p.window_xy, "m", kPositive, "Half width of the search window");
-  table.add("window_phi", p.window_phi, "rad", kPositive, "Half width of the search window in heading");
-  table.add("step_xy", p.step_xy, "m", kPositive, "Step of the search");
-  table.add("step_phi", p.step_phi, "rad", kPositive, "Step of the search in heading");
+  table.add("window_xy", p.window_xy, "m", {0.01, 5}, "Half width of the search window");
+  table.add("window_phi", p.window_phi, "rad", {0.01, 3.2}, "Half width of the search window in heading");
+  table.add("step_xy", p.step_xy, "m", {0.005, 1}, "Step of the search");
+  table.add("step_phi", p.step_phi, "rad", {0.001, 1}, "Step of the search in heading");
   table.add("max_beams", p.max_beams, "", {1, 1e6},
             "Most beams that are scored, evenly spread over the scan");
   table.add("sigma", p.sigma, "m", kPositive,
@@ -102,12 +102,12 @@ void describe(ParameterTable& table, GridMapperParams& p) {
   describe(table, p.filter.map);
   describe(table, p.filter.matcher);
   table.section("rescue", "Correlative search for scans that the matcher cannot explain");
-  table.add("below", p.filter.rescue_below, "", kShare, "Search if fewer beams than this share are inliers");
+  table.add("below", p.filter.rescue_below, "", kShare, "Search if fewer beams are inliers than this share of what is usual over the last scans");
   table.add("slip_beyond", p.filter.slip_beyond, "", kPositive,
             "A match this many sigmas from odometry's prediction makes odometry doubtful");
   table.add("slip_cost", p.filter.slip_cost, "", kNonNegative,
             "Negative log probability that odometry is wrong at a doubtful scan");
-  table.add("slip_information", p.filter.slip_information, "", kShare,
+  table.add("slip_information", p.filter.slip_information, "", {1e-6, 1},
             "Share of the odometry prior's information that is believed during a rescue");
   describe(table, p.filter.search);
   table.section("motion", "Odometry prior of one step");

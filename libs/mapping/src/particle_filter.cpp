@@ -36,6 +36,17 @@ bool covers(const CorrelativeSearchParams& search, const TPose2D& a, const TPose
          std::abs(mrpt::math::wrapToPi(a.phi - b.phi)) < 0.5 * search.window_phi;
 }
 
+/** Mean share of inlier beams over the last scans: how well scans can be expected to fit here. In the open, where
+ * most beams end where nothing was seen before, it is low without anything being wrong. */
+double usualInlierShare(const Particle& particle) {
+  constexpr std::size_t kScans = 10;
+  const std::size_t n = std::min(kScans, particle.path.size());
+  double sum = 0;
+  for (std::size_t k = particle.path.size() - n; k < particle.path.size(); ++k)
+    sum += static_cast<double>(particle.path[k].inlier_share);
+  return sum / static_cast<double>(n);
+}
+
 /** The last motion again; nothing if there is none yet. */
 TPose2D lastIncrement(const Particle& particle) {
   const auto n = particle.path.size();
@@ -62,10 +73,11 @@ Eigen::Matrix3d ParticleFilter::motionInformation(const MotionParams& p, const T
 void ParticleFilter::step(const LaserPoints& scan, const std::optional<TPose2D>& increment) {
   odometry_.push_back(odometry_.empty() ? TPose2D()
                                         : compose(odometry_.back(), increment.value_or(TPose2D())));
+  if (!increment) odometry_since_ = odometry_.size() - 1;
   std::vector<Particle> next;
   for (auto& particle : particles_) {
     if (particle.path.empty()) {
-      extend(particle, scan, {});
+      extend(particle, scan, unseen({}, 1));
       next.push_back(std::move(particle));
       continue;
     }
@@ -91,14 +103,11 @@ void ParticleFilter::step(const LaserPoints& scan, const std::optional<TPose2D>&
 std::vector<ParticleFilter::Proposal> ParticleFilter::propose(const Particle& particle,
                                                               const LaserPoints& scan,
                                                               const PosePrior& prior) {
-  if (particle.map.empty()) {
-    Proposal blind;
-    blind.match.pose = prior.mean;
-    return {blind};
-  }
+  if (particle.map.empty() || scan.points.empty())
+    return {unseen(prior.mean, particle.path.back().inlier_share)};
   const MatchResult match = matcher_.match(particle.map, scan, prior);
   const bool fits =
-      match.inlier_share >= params_.rescue_below && mahalanobis(match.pose, prior) <= params_.slip_beyond;
+      match.inlier_share >= params_.rescue_below * usualInlierShare(particle) && mahalanobis(match.pose, prior) <= params_.slip_beyond;
   std::vector<Proposal> out;
   if (fits && !isSurprising(particle, prior))
     out.push_back(proposal(match, prior, 0, true));
@@ -113,6 +122,13 @@ bool ParticleFilter::isSurprising(const Particle& particle, const PosePrior& pri
   const PosePrior expected{compose(particle.path.back().pose, motion),
                            motionInformation(params_.motion, motion)};
   return particle.path.size() > 1 && mahalanobis(prior.mean, expected) > params_.slip_beyond;
+}
+
+ParticleFilter::Proposal ParticleFilter::unseen(const TPose2D& pose, float inlier_share) {
+  Proposal blind;
+  blind.match.pose = pose;
+  blind.match.inlier_share = static_cast<double>(inlier_share);
+  return blind;
 }
 
 ParticleFilter::Proposal ParticleFilter::proposal(const MatchResult& match, const PosePrior& prior,
@@ -156,17 +172,23 @@ void ParticleFilter::addSlips(std::vector<Proposal>& modes, const Particle& part
   const Eigen::Matrix3d information = motionInformation(params_.motion, motion) * params_.slip_information;
   // Wheels that slip go on slipping at no further cost.
   const double cost = particle.path.back().by_odometry ? params_.slip_cost : 0.0;
+  const double fitting = params_.rescue_below * usualInlierShare(particle);
+  // Odometry is given up only for a pose that explains the scan, not for one that is merely less bad.
+  const auto add = [&](const PosePrior& wide, const TPose2D& start) {
+    const MatchResult match = matcher_.match(particle.map, scan, wide, start);
+    if (match.inlier_share >= fitting) modes.push_back(proposal(match, wide, cost, false));
+  };
   std::vector<TPose2D> searched;
   // The robot is about where odometry says, or went on as before, or stood still.
   for (const auto& centre : {prior.mean, compose(last, motion), last}) {
     const PosePrior wide{centre, information};
-    modes.push_back(proposal(matcher_.match(particle.map, scan, wide), wide, cost, false));
+    add(wide, centre);
     const bool covered = std::any_of(searched.begin(), searched.end(),
                                      [&](const auto& c) { return covers(params_.search, c, centre); });
     if (!search || covered) continue;
     searched.push_back(centre);
     for (const auto& peak : correlativeSearch(particle.map, scan, centre, params_.search))
-      modes.push_back(proposal(matcher_.match(particle.map, scan, wide, peak.pose), wide, cost, false));
+      add(wide, peak.pose);
   }
 }
 
@@ -174,6 +196,7 @@ std::optional<PosePrior> ParticleFilter::priorSinceAgreement(const Particle& par
   std::size_t k = particle.path.size() - 1;
   while (k > 0 && !particle.path[k].by_odometry) --k;
   if (k + 1 == particle.path.size()) return std::nullopt;  // the last step's own prior says the same
+  if (k < odometry_since_) return std::nullopt;            // a gap lies in between
   const TPose2D motion = odometry_.back() - odometry_[k];
   return PosePrior{compose(particle.path[k].pose, motion), motionInformation(params_.motion, motion)};
 }

@@ -27,7 +27,7 @@ struct FilterParams {
   MatcherParams matcher;
   CorrelativeSearchParams search;
   MotionParams motion;
-  double rescue_below = 0.85;      ///< share of inlier beams
+  double rescue_below = 0.85;      ///< share of the inlier beams that are usual
   double slip_beyond = 5.0;        ///< sigmas
   double slip_cost = 10.0;         ///< negative log probability
   double slip_information = 0.02;  ///< share of the odometry's information that is left in a rescue
@@ -93,6 +93,8 @@ class ParticleFilter {
   std::vector<Proposal> propose(const Particle& particle, const LaserPoints& scan, const PosePrior& prior);
   /** True if odometry says something quite different from the motion before: wheels that start to slip. */
   bool isSurprising(const Particle& particle, const PosePrior& prior) const;
+  /** A pose that no scan had a say in. @param inlier_share to go on with */
+  static Proposal unseen(const mrpt::math::TPose2D& pose, float inlier_share);
   Proposal proposal(const MatchResult& match, const PosePrior& prior, double extra_cost,
                     bool by_odometry) const;
   /** All modes where odometry or the match with it is in doubt. @param search also by correlative search */
@@ -100,7 +102,8 @@ class ParticleFilter {
                                      const PosePrior& prior, const MatchResult& match, bool search);
   void addSlips(std::vector<Proposal>& modes, const Particle& particle, const LaserPoints& scan,
                 const PosePrior& prior, bool search) const;
-  /** Odometry's prediction from the last node that agreed with it; empty if that was the last node. */
+  /** Odometry's prediction from the last node that agreed with it; empty if that was the last node, or if
+   * odometry is missing since. */
   std::optional<PosePrior> priorSinceAgreement(const Particle& particle) const;
   Proposal sampled(const Proposal& around, const PosePrior& prior);
   void extend(Particle& particle, const LaserPoints& scan, const Proposal& proposal);
@@ -114,6 +117,7 @@ class ParticleFilter {
   std::mt19937_64 random_;
   std::vector<Particle> particles_;
   std::vector<mrpt::math::TPose2D> odometry_;  ///< T_start_frame by odometry alone, one for each frame so far
+  std::size_t odometry_since_ = 0;             ///< first frame after the last one that odometry did not reach
   uint32_t rescues_ = 0, resamplings_ = 0;
 };
 

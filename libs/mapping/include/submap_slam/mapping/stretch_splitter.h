@@ -3,7 +3,6 @@
 #include <submap_slam/core/local_mapper.h>
 #include <submap_slam/core/parameters.h>
 
-#include <deque>
 #include <optional>
 
 namespace submap_slam {
