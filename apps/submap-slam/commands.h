@@ -14,6 +14,8 @@ void addJoinCommand(CLI::App& app, int& exit_code);
 void addEvalCommand(CLI::App& app, int& exit_code);
 void addCheckCommand(CLI::App& app, int& exit_code);
 void addInfoCommand(CLI::App& app, int& exit_code);
+void addSimulateCommand(CLI::App& app, int& exit_code);
+void addExperimentCommand(CLI::App& app, int& exit_code);
 void addParametersCommand(CLI::App& app, int& exit_code);
 
 /** --list-joiners: the joiners of the installed plugins and of `plugin_files`. */

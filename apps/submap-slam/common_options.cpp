@@ -34,7 +34,10 @@ void addConfigurationOptions(CLI::App& command, ConfigurationOptions& options) {
       ->type_name("SECTION.KEY=VALUE")
       ->group(group);
   addPluginOption(command, options);
-  command.add_option("--seed", options.seed, "Seed of the random streams, as --set run.seed=N")
+  command
+      .add_option_function<std::string>(
+          "--seed", [&options](const std::string& seed) { options.settings.push_back("run.seed=" + seed); },
+          "Seed of the random streams, as --set run.seed=N")
       ->type_name("N")
       ->group(group);
 }

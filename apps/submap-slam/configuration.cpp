@@ -1,14 +1,13 @@
 #include "configuration.h"
 
 #include <fmt/format.h>
-#include <mrpt/config/CConfigFile.h>
 #include <submap_slam/core/errors.h>
+#include <submap_slam/core/ini_file.h>
 #include <submap_slam/core/plugins.h>
 #include <submap_slam/core/version.h>
 #include <submap_slam/rawlog/resume_state.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <iterator>
 #include <sstream>
 
@@ -50,8 +49,9 @@ void describeJoiningParameters(ParameterTable& table, Configuration& config) {
  * themselves. */
 std::vector<std::string> pluginFiles(const std::string& ini_file, const ConfigurationOptions& options) {
   std::string list;
-  if (std::filesystem::is_regular_file(ini_file))
-    list = mrpt::config::CConfigFile(ini_file).read_string("plugins", "load", "");
+  if (!ini_file.empty())
+    for (const auto& entry : readIni(ini_file))
+      if (entry.section == "plugins" && entry.key == "load") list = entry.value;
   const std::string key = "plugins.load=";
   for (const auto& setting : options.settings)
     if (setting.compare(0, key.size(), key) == 0) list = setting.substr(key.size());

@@ -22,7 +22,9 @@ struct EvalOptions {
   bool json = false;
 };
 
+/** Null if there is nothing to make statistics of: a mean of 0 would look like a perfect result. */
 Json toJson(const ErrorStatistics& e) {
+  if (e.count == 0) return nullptr;
   return {{"mean", e.mean},
           {"std", e.std},
           {"rmse", e.rmse},
@@ -46,6 +48,15 @@ Json toJson(const TrajectoryError& e) {
           {"rotation_deg", toJson(e.rotation_deg)}};
 }
 
+void checkLimits(const EvalOptions& options) {
+  const auto check = [](const char* option, double seconds) {
+    if (!(seconds >= 0)) throw ConfigError(fmt::format("{} {}: must not be negative", option, seconds));
+  };
+  check("--min-dt", options.filter.min_dt_s);
+  check("--max-dt", options.filter.max_dt_s);
+  check("--split", options.split_s);
+}
+
 /** The relations within the limits that the user gave. */
 std::vector<Relation> filtered(const std::vector<Relation>& relations, const RelationsOptions& limits) {
   std::vector<Relation> kept;
@@ -58,6 +69,9 @@ std::vector<Relation> filtered(const std::vector<Relation>& relations, const Rel
 
 Json evaluateAgainstRelations(const EvalOptions& options, const TimedTrajectory& trajectory) {
   const auto relations = filtered(readRelations(options.relations), options.filter);
+  if (relations.empty())
+    throw InputError(
+        fmt::format("{}: no relation is as long as --min-dt and --max-dt ask for", options.relations));
   const RelationsReport report = evaluateRelationsSplit(relations, trajectory, options.split_s);
   if (report.all.used == 0)
     throw InputError(fmt::format("{}: no relation that {} covers; are they of the same log?",
@@ -79,6 +93,7 @@ Json evaluateAgainstReference(const EvalOptions& options, const TimedTrajectory&
 int runEval(const EvalOptions& options) {
   if (options.relations.empty() && options.reference.empty())
     throw ConfigError("eval: give --relations R.relations or --reference T.tum");
+  checkLimits(options);
   const TimedTrajectory trajectory = readTum(options.trajectory);
   Json result;
   if (!options.relations.empty()) result["relations"] = evaluateAgainstRelations(options, trajectory);

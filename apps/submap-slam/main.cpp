@@ -4,10 +4,10 @@
 #include <submap_slam/core/errors.h>
 #include <submap_slam/core/version.h>
 
-#include <algorithm>
 #include <cstdio>
 
 #include "commands.h"
+#include "printable.h"
 #include "stop_signal.h"
 
 namespace {
@@ -34,6 +34,8 @@ int run(CLI::App& app, int argc, char** argv) {
   addEvalCommand(app, exit_code);
   addCheckCommand(app, exit_code);
   addInfoCommand(app, exit_code);
+  addSimulateCommand(app, exit_code);
+  addExperimentCommand(app, exit_code);
   addParametersCommand(app, exit_code);
 
   app.parse(argc, argv);
@@ -45,9 +47,8 @@ int run(CLI::App& app, int argc, char** argv) {
   return exit_code;
 }
 
-int reportError(std::string text, int exit_code) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  fmt::print(stderr, "submap-slam: error: {}\n", text);
+int reportError(const std::string& text, int exit_code) {
+  fmt::print(stderr, "submap-slam: error: {}\n", printable(text));
   return exit_code;
 }
 

@@ -11,18 +11,19 @@ void addLogMetrics(Metrics& metrics, const LogReport& report) {
 }
 
 void addJoinMetrics(Metrics& metrics, const GridSubmaps& submaps, const JoinedMap& joined) {
-  std::size_t nodes = 0, frames = 0, accepted = 0;
-  for (const auto& submap : submaps) nodes += submap->keyNodes(), frames += submap->nodes.size();
-  for (const auto& constraint : joined.constraints) accepted += constraint.accepted;
+  std::size_t key_nodes = 0, frames = 0, accepted = 0, rejected = 0;
+  for (const auto& submap : submaps) key_nodes += submap->keyNodes(), frames += submap->nodes.size();
+  for (const auto& constraint : joined.constraints)
+    if (constraint.inter) ++(constraint.accepted ? accepted : rejected);
   metrics["frames"] = frames;
-  metrics["nodes"] = nodes;
+  metrics["key_nodes"] = key_nodes;
   metrics["submaps"] = submaps.size();
   metrics["objective"] = joined.objective;
   metrics["join_status"] = toString(joined.status);
   metrics["join_reason"] = joined.reason;
   metrics["join_iterations"] = joined.iterations.size();
   metrics["constraints_accepted"] = accepted;
-  metrics["constraints_rejected"] = joined.constraints.size() - accepted;
+  metrics["constraints_rejected"] = rejected;
 }
 
 void addTime(Metrics& metrics, const std::string& prefix, const StageTimer& timer) {

@@ -16,8 +16,8 @@ using Metrics = nlohmann::ordered_json;
 /** scans, frames, odometry_path_m */
 void addLogMetrics(Metrics& metrics, const LogReport& report);
 
-/** frames, nodes (key nodes), submaps, objective, join_status, join_reason, join_iterations,
- * constraints_accepted, constraints_rejected */
+/** frames, key_nodes, submaps, objective, join_status, join_reason, join_iterations, and of the loop closures
+ * that were tried constraints_accepted and constraints_rejected */
 void addJoinMetrics(Metrics& metrics, const GridSubmaps& submaps, const JoinedMap& joined);
 
 /** `<prefix>wall_s` and `<prefix>cpu_s`: time since the timer was made. */

@@ -25,6 +25,7 @@ struct Job {
   Stretch stretch;
   GridSubmaps submaps;
   double fraction_read = 0;
+  bool built = false;
 };
 using JobPtr = std::shared_ptr<Job>;
 
@@ -51,12 +52,24 @@ void addRunMetrics(Metrics& metrics, const Configuration& config, const Reporter
   metrics["warnings"] = reporter.warnings();
 }
 
+/** A map of nothing looks like a result; better to say why. */
+void requireObservations(const EvidenceGrid& map) {
+  if (map.observedCells() == 0)
+    throw InputError(
+        "the map would be empty: no beam of any scan is valid, at least [reader] min_range and at most "
+        "[mapper] "
+        "max_range long");
+}
+
 /** Joins and writes everything but metrics.json. */
 void joinAndWrite(const GridSubmaps& submaps, const JoinerChain& joiners, const OutputDirectory& out,
-                  const Configuration& config, Reporter& reporter, Metrics& metrics) {
+                  const Configuration& config, Reporter& reporter, RunSummary& summary) {
+  Metrics& metrics = summary.metrics;
   const StageTimer join_timer;
   reporter.log(fmt::format("{} submaps", submaps.size()));
-  const JoinedMap joined = joinSubmaps(submaps, joiners, config.joining.map_resolution, reporter);
+  const auto [joined, stopped] = joinSubmaps(submaps, joiners, config.joining.map_resolution, reporter);
+  requireObservations(joined.map);
+  summary.interrupted = stopped;
   addJoinMetrics(metrics, submaps, joined);
   addTime(metrics, "join_", join_timer);
 
@@ -95,8 +108,7 @@ RunSummary mapRawlog(const std::string& log, const std::string& folder, bool ove
   if (summary.interrupted) return summary;
 
   addLogMetrics(summary.metrics, source.report());
-  joinAndWrite(readSubmaps(out.file(kSubmapFile)), joiners, out, config, reporter, summary.metrics);
-  summary.interrupted = stopRequested();
+  joinAndWrite(readSubmaps(out.file(kSubmapFile)), joiners, out, config, reporter, summary);
   addRunMetrics(summary.metrics, config, reporter, timer);
   writeJson(out.file(kMetricsFile), summary.metrics);
   return summary;
@@ -128,8 +140,7 @@ RunSummary joinFile(const std::string& submap_file, const std::string& folder, b
   const OutputDirectory out(folder, overwrite);
   summary.damaged = !read.damage.empty();
   if (summary.damaged) reporter.warning(read.damage + "; the submaps before it are joined");
-  joinAndWrite(read.submaps, joiners, out, config, reporter, summary.metrics);
-  summary.interrupted = stopRequested();
+  joinAndWrite(read.submaps, joiners, out, config, reporter, summary);
   addRunMetrics(summary.metrics, config, reporter, timer);
   writeJson(out.file(kMetricsFile), summary.metrics);
   return summary;
@@ -139,24 +150,29 @@ bool buildSubmaps(StretchSource& source, const LocalMapper& mapper, SubmapLogWri
                   Reporter& reporter) {
   using tbb::filter_mode;
   const uint64_t built_before = writer.state().stretches_done;
-  bool stopped = false;
+  bool read_all = false, left_out = false;
   std::size_t frames_built = 0;
 
   const auto read = [&](tbb::flow_control& flow) -> JobPtr {
-    while (!(stopped = stopRequested())) {
+    while (!stopRequested()) {
       auto stretch = source.next();
-      if (!stretch) break;
+      read_all = !stretch;
+      if (read_all) break;
       if (stretch->index < built_before) continue;  // an earlier run did it
-      return std::make_shared<Job>(Job{std::move(*stretch), {}, source.fractionRead()});
+      return std::make_shared<Job>(Job{std::move(*stretch), {}, source.fractionRead(), false});
     }
     flow.stop();
     return nullptr;
   };
   const auto build = [&](const JobPtr& job) {
+    if (stopRequested()) return job;
     job->submaps = mapper.map(job->stretch);
+    job->built = true;
     return job;
   };
   const auto write = [&](const JobPtr& job) {
+    left_out = left_out || !job->built;
+    if (left_out) return;  // also what comes behind it, so that the file has no gap
     auto id = static_cast<uint32_t>(writer.state().submaps_done);
     for (const auto& submap : job->submaps) submap->id = id++;
     writer.appendStretch(job->submaps);
@@ -166,25 +182,29 @@ bool buildSubmaps(StretchSource& source, const LocalMapper& mapper, SubmapLogWri
 
   reporter.progress("building submaps", 0);
   const std::size_t threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  tbb::parallel_pipeline(2 * threads,
-                         tbb::make_filter<void, JobPtr>(filter_mode::serial_in_order, read) &
-                             tbb::make_filter<JobPtr, JobPtr>(filter_mode::parallel, build) &
-                             tbb::make_filter<JobPtr, void>(filter_mode::serial_in_order, write));
-  if (!stopped) writer.finish();
-  return !stopped;
+  const std::size_t in_flight = threads + 2;  // one being read, one being written
+  tbb::parallel_pipeline(in_flight, tbb::make_filter<void, JobPtr>(filter_mode::serial_in_order, read) &
+                                        tbb::make_filter<JobPtr, JobPtr>(filter_mode::parallel, build) &
+                                        tbb::make_filter<JobPtr, void>(filter_mode::serial_in_order, write));
+  const bool complete = read_all && !left_out;
+  if (complete) writer.finish();
+  return complete;
 }
 
-JoinedMap joinSubmaps(const GridSubmaps& submaps, const JoinerChain& joiners, double map_resolution,
-                      Reporter& reporter) {
-  JoinedMap joined = chainSubmaps(submaps);
+JoinOutcome joinSubmaps(const GridSubmaps& submaps, const JoinerChain& joiners, double map_resolution,
+                        Reporter& reporter) {
+  JoinOutcome result{chainSubmaps(submaps)};
+  JoinedMap& joined = result.map;
   for (const auto& joiner : joiners) {
+    const auto show = [&](double fraction) { reporter.progress("joining with " + joiner->name(), fraction); };
     const auto progress = [&](double fraction, const std::string&) {
-      reporter.progress("joining with " + joiner->name(), fraction);
-      return !stopRequested();
+      show(fraction);
+      if (stopRequested()) result.stopped = true;
+      return !result.stopped;
     };
-    progress(0, "");
+    show(0);
     joined = joiner->join(submaps, joined, progress);
-    progress(1, "");
+    show(1);
     checkFrames(*joiner, joined, submaps.size());
     const std::string outcome =
         fmt::format("{}: {} ({}), objective {}, {} iterations", joiner->name(), toString(joined.status),
@@ -196,7 +216,7 @@ JoinedMap joinSubmaps(const GridSubmaps& submaps, const JoinerChain& joiners, do
     }
   }
   if (joined.map.observedCells() == 0) joined.map = fuseEvidence(submaps, joined.frames, map_resolution);
-  return joined;
+  return result;
 }
 
 }  // namespace submap_slam

@@ -20,7 +20,7 @@ namespace submap_slam {
 struct RunSummary {
   Metrics metrics;           ///< what metrics.json holds
   bool damaged = false;      ///< the log is damaged; the part before the damage was used
-  bool interrupted = false;  ///< a stop signal came
+  bool interrupted = false;  ///< a stop signal ended it early
 };
 
 /** Maps a rawlog: reads frames, cuts them into stretches, builds their submaps, joins them, writes all
@@ -42,12 +42,19 @@ RunSummary joinFile(const std::string& submap_file, const std::string& folder, b
                     const Configuration& config, Reporter& reporter);
 
 /** Builds the submaps of all stretches that `writer` does not have yet, in parallel; each is on disk before
- * the progress goes on. Memory does not grow with the log. Returns false if a stop signal ended it early. */
+ * the progress goes on. Memory does not grow with the log. After a stop signal no stretch is begun any more;
+ * returns false if it left stretches out. */
 bool buildSubmaps(StretchSource& source, const LocalMapper& mapper, SubmapLogWriter& writer,
                   Reporter& reporter);
 
+/** What joiners made of submaps. */
+struct JoinOutcome {
+  JoinedMap map;
+  bool stopped = false;  ///< a stop signal ended a joiner early
+};
+
 /** Runs the joiners one after the other, from the chain of end poses, and makes the global map. */
-JoinedMap joinSubmaps(const GridSubmaps& submaps, const JoinerChain& joiners, double map_resolution,
-                      Reporter& reporter);
+JoinOutcome joinSubmaps(const GridSubmaps& submaps, const JoinerChain& joiners, double map_resolution,
+                        Reporter& reporter);
 
 }  // namespace submap_slam

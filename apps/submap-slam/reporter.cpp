@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "printable.h"
+
 namespace submap_slam {
 namespace {
 
@@ -65,9 +67,10 @@ void Reporter::log(const std::string& line) { log_.push_back(line); }
 
 void Reporter::warning(const std::string& line) {
   endProgressLine();
-  fmt::print(stderr, "submap-slam: warning: {}\n", line);
-  log_.push_back("warning: " + line);
-  warnings_.push_back(line);
+  const std::string text = printable(line);
+  fmt::print(stderr, "submap-slam: warning: {}\n", text);
+  log_.push_back("warning: " + text);
+  warnings_.push_back(text);
 }
 
 void Reporter::note(const std::string& line) {

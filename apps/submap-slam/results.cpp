@@ -32,6 +32,7 @@ void writeResults(const OutputDirectory& out, const GridSubmaps& submaps, const 
   writeScene(out.file("map.3Dscene"), joined.map, trajectory, joined.frames);
   writeTum(out.file("trajectory.tum"), trajectory);
   writeG2o(out.file("graph.g2o"), joined.frames, joined.constraints);
+  writeConstraints(out.file("constraints.csv"), joined.constraints);
 }
 
 void writeRunRecord(const OutputDirectory& out, const Configuration& config,

@@ -17,6 +17,7 @@ ResumeState runIdentity(const std::string& log, const Configuration& config) {
   run.config_hash = config.submapFingerprint();
   run.log = fs::path(log).filename().string();
   run.log_bytes = fs::file_size(log);
+  run.log_hash = endsHash(log);
   return run;
 }
 

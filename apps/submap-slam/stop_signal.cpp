@@ -1,7 +1,11 @@
 #include "stop_signal.h"
 
+#include <unistd.h>
+
 #include <atomic>
 #include <csignal>
+
+#include "common_options.h"
 
 namespace submap_slam {
 namespace {
@@ -13,13 +17,17 @@ std::atomic<bool>& stopFlag() {
   return flag;
 }
 
+void onStopSignal(int) {
+  if (stopFlag().exchange(true)) _exit(kInterrupted);
+}
+
 }  // namespace
 
 void catchStopSignals() {
   stopFlag() = false;  // constructed here, not in the handler
   struct sigaction action = {};
-  action.sa_handler = [](int) { stopFlag() = true; };
-  action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);
+  action.sa_handler = onStopSignal;
+  action.sa_flags = SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
 }

@@ -18,6 +18,13 @@ std::string resources(const Metrics& m) {
                      m["peak_memory_mb"].get<double>());
 }
 
+/** Nothing where no joiner looked for any. */
+std::string loopClosures(const Metrics& m) {
+  const int accepted = m["constraints_accepted"].get<int>(), rejected = m["constraints_rejected"].get<int>();
+  if (accepted + rejected == 0) return "";
+  return fmt::format(", {} of {} loop closures accepted", accepted, accepted + rejected);
+}
+
 std::string howToGoOn(const std::string& submap_file) {
   return fmt::format(
       "stopped; what was complete is in {}\ngive the same command again to go on, or join what is there:"
@@ -30,11 +37,10 @@ std::string howToGoOn(const std::string& submap_file) {
 std::string mapSummary(const RunSummary& summary, const std::string& folder) {
   const Metrics& m = summary.metrics;
   if (!m.contains("join_status")) return howToGoOn(inFolder(folder, kSubmapFile));
-  std::string text = fmt::format("{} submaps, {} nodes, {} frames\n", m["submaps"].get<int>(),
-                                 m["nodes"].get<int>(), m["frames"].get<int>());
-  text += fmt::format("joined: {} ({}), {} of {} constraints accepted\n", m["join_status"].get<std::string>(),
-                      m["join_reason"].get<std::string>(), m["constraints_accepted"].get<int>(),
-                      m["constraints_accepted"].get<int>() + m["constraints_rejected"].get<int>());
+  std::string text = fmt::format("{} submaps, {} key nodes, {} frames\n", m["submaps"].get<int>(),
+                                 m["key_nodes"].get<int>(), m["frames"].get<int>());
+  text += fmt::format("joined: {} ({}){}\n", m["join_status"].get<std::string>(),
+                      m["join_reason"].get<std::string>(), loopClosures(m));
   text += resources(m) + "\n";
   if (summary.interrupted)
     text += fmt::format(

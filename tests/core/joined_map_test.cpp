@@ -204,6 +204,17 @@ TEST(FuseEvidence, TakesTheAskedOrTheFinestResolution) {
   EXPECT_NEAR(fuseEvidence({coarse, fine}, frames, 0.05).resolution(), 0.05, 1e-12);
 }
 
+TEST(FuseEvidence, AFrameAlmostParallelToTheAxesIsLikeAParallelOne) {
+  GridSubmaps submaps{emptySubmap(), emptySubmap()};
+  set(*submaps[0], 0.05, 0.05, 1, 1);
+  set(*submaps[1], 0.05, 0.05, 2, 1);
+  for (const double phi : {1e-7, -1e-8, 1e-10}) {
+    const EvidenceGrid map = fuseEvidence(submaps, {gaussian({}), gaussian({4, 40, phi})}, 0.1);
+    EXPECT_NEAR(logOddsAt(map, 0.05, 0.05), 1, 1e-5);
+    EXPECT_NEAR(logOddsAt(map, 4.05, 40.05), 2, 1e-4);
+  }
+}
+
 TEST(FuseEvidence, NothingObservedGivesNoObservedCell) {
   EXPECT_EQ(fuseEvidence({emptySubmap()}, {gaussian({0, 0, 0})}, 0.1).observedCells(), 0u);
   EXPECT_EQ(fuseEvidence({}, {}, 0.1).observedCells(), 0u);

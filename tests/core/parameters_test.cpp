@@ -138,9 +138,45 @@ TEST_F(Parameters, AnIniFileThatIsNotThereIsAnInputError) {
 
 TEST_F(Parameters, AnErrorInAnIniFileNamesFileAndKey) {
   const std::string file = temp.write("bad.ini", "[scanner]\nrange = far\n");
-  EXPECT_THAT(refusal([&] { table.loadIni(file); }), AllOf(HasSubstr(file), HasSubstr("[scanner] range")));
+  EXPECT_THAT(refusal([&] { table.loadIni(file); }),
+              AllOf(HasSubstr(file + ":2: "), HasSubstr("[scanner] range")));
   const std::string unknown = temp.write("unknown.ini", "[scanner]\nrang = 3\n");
   EXPECT_THAT(refusal([&] { table.loadIni(unknown); }), HasSubstr("did you mean [scanner] range?"));
+}
+
+TEST_F(Parameters, LoadAnIniFileWithCommentsBehindValuesAndBlanksAnywhere) {
+  table.loadIni(temp.write("some.ini",
+                           "\xEF\xBB\xBF; as an editor of Windows writes it\r\n"
+                           " [scanner]  // what it gives\r\n\trange\t= 20 // m\r\n count=9\n"));
+  EXPECT_EQ(settings.count, 9);
+  EXPECT_EQ(settings.range, 20);
+}
+
+TEST_F(Parameters, AValueEndsWhereACommentBegins) {
+  table.loadIni(temp.write("some.ini",
+                           "// c\n[filter]\nlabel = LASER #1;a//b ; comment = 3\nscheme=residual\t// c\n"
+                           "[scanner]\ncount = 9 ;\n"));
+  EXPECT_EQ(settings.label, "LASER #1;a//b");
+  EXPECT_EQ(settings.scheme, "residual");
+  EXPECT_EQ(settings.count, 9);
+  table.loadIni(temp.write("empty.ini", "[filter]\nlabel = ; nothing\n"));
+  EXPECT_EQ(settings.label, "");
+}
+
+TEST_F(Parameters, LinesOfAnIniFileThatSayNothingAreRefused) {
+  const auto refused_line = [&](const std::string& content) {
+    const auto file = temp.write("bad.ini", content);
+    return refusal([&] { table.loadIni(file); });
+  };
+  EXPECT_THAT(refused_line("[scanner]\n\nrange 20\n"),
+              AllOf(HasSubstr("bad.ini:3: "), HasSubstr("'range 20'"), HasSubstr("key = value")));
+  EXPECT_THAT(refused_line("[scanner]\n= 20\n"), HasSubstr("bad.ini:2: "));
+  EXPECT_THAT(refused_line("# c\n[scanner\nrange = 20\n"), HasSubstr("bad.ini:2: '[scanner': expected"));
+  EXPECT_THAT(refused_line("range = 20\n"), AllOf(HasSubstr("bad.ini:1: "), HasSubstr("[section]")));
+  EXPECT_THAT(refused_line("[scaner]\n"),
+              AllOf(HasSubstr("bad.ini:1: "), HasSubstr("did you mean [scanner]?")));
+  EXPECT_THAT(refused_line("[scanner]\nrange = 20\n[filter]\n[scanner]\nrange = 20\n"),
+              AllOf(HasSubstr("bad.ini:5: "), HasSubstr("[scanner] range"), HasSubstr("line 2")));
 }
 
 TEST_F(Parameters, TheWrittenIniFileGivesTheSameBitsBack) {

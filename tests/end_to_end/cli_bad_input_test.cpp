@@ -1,4 +1,6 @@
 /** Bad input ends in one clear line, and what is valid or was there before is kept. */
+#include <algorithm>
+
 #include "cli_fixture.h"
 
 namespace submap_slam::testing {
@@ -54,6 +56,60 @@ TEST_F(CliTest, RefusesBadConfigurations) {
   EXPECT_FALSE(fs::exists(path("out")));
 }
 
+TEST_F(CliTest, RefusesConfigurationsThatSaySomethingElseThanTheyDo) {
+  const auto with_ini = [&](const std::string& content) {
+    writeFile(path("my.ini"), content);
+    return run({"map", log("room.rawlog"), "-o", path("out"), "-c", path("my.ini")});
+  };
+  expectRefused(with_ini("[submaps]\nmax_distance 3\n"), "my.ini:2: 'max_distance 3'");
+  expectRefused(with_ini("[submap]\n"), "my.ini:1: unknown section [submap]; did you mean [submaps]?");
+  expectRefused(with_ini("[submaps]\nmax_distance = 3\nmax_distance = 4\n"), "my.ini:3: ");
+  expectRefused(run({"map", log("room.rawlog"), "-o", path("out"), "--seed", "-1"}), "[run] seed = '-1'");
+  EXPECT_FALSE(fs::exists(path("out")));
+}
+
+/** One line that names the file and harms no terminal. */
+void expectPrintable(const std::string& message, const std::string& file) {
+  EXPECT_THAT(message, HasSubstr(file));
+  EXPECT_LT(message.size(), 1200u);
+  EXPECT_EQ(
+      std::count_if(message.begin(), message.end(), [](unsigned char c) { return c < 0x20 || c > 0x7e; }), 1)
+      << "only the end of the line";
+}
+
+TEST_F(CliTest, NeverPrintsTheBytesOfBinaryFiles) {
+  const Outcome configured = run({"map", log("room.rawlog"), "-o", path("out"), "-c", log("loop.rawlog")});
+  expectRefused(configured, "expected an ini file");
+  expectPrintable(configured.err, "loop.rawlog");
+
+  const Outcome judged = run({"eval", log("loop.rawlog"), "--reference", log("loop.truth.tum")});
+  expectRefused(judged, "loop.rawlog:1: is no text");
+  expectPrintable(judged.err, "loop.rawlog");
+
+  writeFile(path("bell.tum"), "\x1b[31m\x07-\xff-\xc3 " + std::string(100000, 'x') + "\n");
+  const Outcome long_line = run({"eval", path("bell.tum"), "--reference", path("bell.tum")});
+  expectRefused(long_line, "'?[31m?-?-?' is not a finite number");
+  expectPrintable(long_line.err, "bell.tum");
+
+  const std::string umlaut = "\xc3\xbc.rawlog";
+  expectRefused(run({"check", path(umlaut)}), umlaut + ": no such file");
+}
+
+TEST_F(CliTest, RefusesToMapNothing) {
+  for (const char* setting : {"mapper.max_range=0.01", "reader.min_range=1000"}) {
+    const Arguments arguments = quickly({"map", log("room.rawlog"), "-o", path("out"), "--set", setting});
+    fs::remove_all(path("out"));
+    expectRefused(run(arguments), "the map would be empty");
+    EXPECT_FALSE(fs::exists(path("out/map.png")));
+  }
+  succeed(quickly({"map", log("room.rawlog"), "-o", path("out"), "--overwrite"}));
+  const std::string map = contentOf(path("out/map.png"));
+  expectRefused(run(quickly({"map", log("room.rawlog"), "-o", path("out"), "--overwrite", "--set",
+                             "reader.min_range=1000"})),
+                "the map would be empty");
+  EXPECT_TRUE(contentOf(path("out/map.png")) == map);
+}
+
 TEST_F(CliTest, RefusesBadPlugins) {
   writeFile(path("text.so"), "no library");
   for (const Arguments& arguments :
@@ -82,6 +138,19 @@ TEST_F(CliTest, RefusesBadTrajectories) {
   expectRefused(run({"eval", path("bad.tum"), "--reference", path("good.tum")}), "bad.tum:2");
   expectRefused(run({"eval", path("good.tum"), "--reference", path("missing.tum")}), "missing.tum");
   expectRefused(run({"eval", path("good.tum"), "--relations", path("later.relations")}), "same log");
+}
+
+TEST_F(CliTest, RefusesLimitsThatNoRelationMeets) {
+  writeFile(path("t.tum"), "0 0 0 0 0 0 0 1\n10 1 0 0 0 0 0 1\n");
+  writeFile(path("r.relations"), "0 10 1 0 0 0 0 0\n");
+  const auto with = [&](const Arguments& limits) {
+    Arguments arguments{"eval", path("t.tum"), "--relations", path("r.relations")};
+    arguments.insert(arguments.end(), limits.begin(), limits.end());
+    return run(arguments);
+  };
+  for (const char* option : {"--min-dt", "--max-dt", "--split"}) expectRefused(with({option, "-5"}), option);
+  expectRefused(with({"--max-dt", "5"}), "--max-dt");
+  expectRefused(with({"--min-dt", "20"}), "--min-dt");
 }
 
 TEST_F(CliTest, KeepsWhatIsThere) {

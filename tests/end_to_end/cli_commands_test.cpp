@@ -1,4 +1,8 @@
 /** Every subcommand of the program does what its help says. */
+#include <submap_slam/rawlog/rawlog_reader.h>
+#include <submap_slam/simulation/simulate.h>
+
+#include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -67,11 +71,23 @@ TEST_F(CliTest, MapWritesEveryResultAndSaysWhere) {
   EXPECT_EQ(metrics["frames"], 547);
   EXPECT_EQ(lines(results.at("trajectory.tum")), 1u + 547u) << "a heading and one line for each frame";
   EXPECT_GT(metrics["submaps"], 3);
-  EXPECT_EQ(metrics["constraints_rejected"], 0);
+  EXPECT_TRUE(metrics["constraints_rejected"].is_number_unsigned());
   EXPECT_TRUE(metrics["warnings"].empty());
   for (const char* key : {"wall_s", "cpu_s", "build_wall_s", "build_cpu_s", "join_wall_s", "join_cpu_s",
                           "write_wall_s", "write_cpu_s", "peak_memory_mb", "objective", "version"})
     EXPECT_TRUE(metrics.contains(key)) << key;
+}
+
+TEST_F(CliTest, LinksOfTheChainAreNoLoopClosures) {
+  const Arguments chained{"map", log("room.rawlog"), "-o", path("out"), "--set", "joining.chain="};
+  const Outcome outcome = succeed(chained);
+  const auto metrics = nlohmann::json::parse(contentOf(path("out/metrics.json")));
+  EXPECT_GT(metrics["submaps"], 3);
+  EXPECT_EQ(metrics["constraints_accepted"], 0);
+  EXPECT_TRUE(metrics["constraints_rejected"].is_number_unsigned());
+  EXPECT_THAT(outcome.err, ::testing::Not(HasSubstr("accepted")));
+  EXPECT_LT(metrics["key_nodes"], metrics["frames"]) << "every frame is a node, but not every one a key node";
+  EXPECT_THAT(outcome.err, HasSubstr(metrics["key_nodes"].dump() + " key nodes, 547 frames"));
 }
 
 TEST_F(CliTest, MapOfTheRoomIsAccurate) {
@@ -114,6 +130,31 @@ TEST_F(CliTest, ParametersChangeTheResult) {
   EXPECT_NE(contentOf(path("a.rawlog")), contentOf(path("b.rawlog")));
 }
 
+/** The same recording by a scanner mounted upside down: the beams come in the opposite direction. */
+void turnOver(SimulatedLog& recording) {
+  for (auto& frame : recording.frames)
+    for (auto& scan : frame.scans) {
+      scan->rightToLeft = !scan->rightToLeft;
+      scan->sensorPose.setYawPitchRoll(scan->sensorPose.yaw(), 0, M_PI);
+    }
+}
+
+TEST_F(CliTest, AScannerMountedUpsideDownGivesTheSameMap) {
+  SimulatedLog recording;
+  RawlogReader reader(log("room.rawlog"));
+  while (auto frame = reader.next()) recording.frames.push_back(*frame);
+  turnOver(recording);
+  writeRawlog(path("turned.rawlog"), recording, RawlogForm::kObservations);
+
+  succeed(quickly({"map", log("room.rawlog"), "-o", path("upright")}));
+  succeed(quickly({"map", path("turned.rawlog"), "-o", path("turned")}));
+  const std::string upright = contentOf(path("upright/map.pgm")), turned = contentOf(path("turned/map.pgm"));
+  ASSERT_EQ(upright.size(), turned.size());
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < upright.size(); ++i) differ += upright[i] != turned[i];
+  EXPECT_LT(differ, upright.size() / 1000) << "only rounding may differ";
+}
+
 TEST_F(CliTest, MapsALogOfActions) {
   succeed(quickly({"map", log("corridor_sf.rawlog"), "-o", path("out")}));
   EXPECT_GT(lines(contentOf(path("out/trajectory.tum"))), 90u);
@@ -147,6 +188,26 @@ TEST_F(CliTest, EvalOfTheTruthItselfFindsNoError) {
   EXPECT_EQ(result["relations"]["global"]["used"], 2);
   EXPECT_NEAR(result["relations"]["local"]["translation_m"]["mean"], 0, 1e-12);
   EXPECT_NEAR(result["relations"]["global"]["translation_m"]["mean"], 0.25, 1e-12);
+}
+
+TEST_F(CliTest, EvalHasNoFiguresWhereNothingWasEvaluated) {
+  writeFile(path("t.tum"), "0 0 0 0 0 0 0 1\n10 1 0 0 0 0 0 1\n");
+  writeFile(path("one.tum"), "10 1 0 0 0 0 0 1\n");
+  writeFile(path("r.relations"), "0 10 1 0 0 0 0 0\n");
+  const Arguments arguments{"eval",        path("t.tum"),  "--relations", path("r.relations"),
+                            "--reference", path("one.tum")};
+  Arguments json = arguments;
+  json.push_back("--json");
+  const auto result = nlohmann::json::parse(succeed(json).out);
+  EXPECT_EQ(result["relations"]["local"]["translation_m"]["mean"], 0);
+  EXPECT_EQ(result["relations"]["global"]["used"], 0);
+  EXPECT_TRUE(result["relations"]["global"]["translation_m"].is_null());
+  EXPECT_TRUE(result["relations"]["global"]["rotation_deg"].is_null());
+  EXPECT_TRUE(result["reference"]["relative"]["translation_m"].is_null()) << "one pose has no step";
+
+  const std::string table = succeed(arguments).out;
+  EXPECT_THAT(table, ::testing::ContainsRegex("global > 60 s +0 +0 +- ± -"));
+  EXPECT_THAT(table, ::testing::ContainsRegex("relative, position .m. +0 +- +-"));
 }
 
 TEST_F(CliTest, EvalTakesRelationsByTheirLength) {

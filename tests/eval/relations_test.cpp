@@ -11,6 +11,7 @@ namespace submap_slam {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 using testing::ThrowsMessage;
 
 /** Poses and relations with all six degrees of freedom: an exact stamp, a nearly exact one, two between
@@ -132,11 +133,21 @@ TEST(Relations, HandWorkedThreePoses) {
   EXPECT_NEAR(r.rotation_deg.squared_mean, 100.0 / 3, 1e-8);
 }
 
-TEST(Relations, LimitsOfTheTimeSplitBelongToBothSides) {
-  const TimedTrajectory trajectory({{0, {}}, {60, {}}});
-  const auto report = evaluateRelationsSplit({{0, 60, {}}}, trajectory, 60);
-  expectCounts(report.local, 1, 0, 0);
-  expectCounts(report.global, 1, 0, 0);
+TEST(Relations, TheLimitOfTheTimeSplitIsLocalAlone) {
+  const TimedTrajectory trajectory({{0, {}}, {60, {}}, {60.001, {}}});
+  const auto report = evaluateRelationsSplit({{0, 60, {}}, {0, 60.001, {}}}, trajectory, 60);
+  expectCounts(report.all, 2, 0, 0);
+  expectCounts(report.local, 1, 0, 1);
+  expectCounts(report.global, 1, 0, 1);
+}
+
+TEST(Relations, TheTableHasNoNumbersWhereNothingWasEvaluated) {
+  const TimedTrajectory trajectory({{0, {}}, {10, {}}});
+  const auto table = formatTable(evaluateRelationsSplit({{0, 10, {}}}, trajectory, 60));
+  const auto global = table.substr(table.find("global > 60 s"));
+  EXPECT_THAT(global, HasSubstr("- ± -"));
+  EXPECT_THAT(global, Not(HasSubstr("0.0000")));
+  EXPECT_THAT(table, HasSubstr("0.0000 ± 0.0000")) << "the local one is perfect";
 }
 
 TEST(Relations, NoneEvaluatedIsAResultWithoutNumbers) {

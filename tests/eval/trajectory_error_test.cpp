@@ -119,6 +119,21 @@ TEST(RelativePoseError, DoesNotDependOnTheGlobalFrame) {
              relativePoseError(noisyPairs({90, -4, -1.9}, 0.1), 3));
 }
 
+TEST(CoordinateError, HandWorkedAfterAligningTheFirstPose) {
+  // The estimate's frame is turned by 90° and shifted; then it is 0.3 m too far in x and 0.1 rad off, then
+  // exact.
+  const TPose2D shift(5, -2, M_PI / 2);
+  const std::vector<PosePair> pairs = {{0, {1, 1, 0}, shift + TPose2D(1, 1, 0)},
+                                       {1, {2, 1, 3.1}, shift + TPose2D(2.3, 1, -3.083185307179586)},
+                                       {2, {3, 1, 0}, shift + TPose2D(3, 1, 0)}};
+  const auto error = coordinateError(pairs);
+  EXPECT_NEAR(error.mae_m, 0.3 / 6, 1e-12);
+  EXPECT_NEAR(error.rmse_m, 0.3 / std::sqrt(6.0), 1e-12);
+  EXPECT_NEAR(error.mae_rad, 0.1 / 3, 1e-12);
+  EXPECT_NEAR(error.rmse_rad, 0.1 / std::sqrt(3.0), 1e-12);
+  EXPECT_EQ(coordinateError({}).mae_m, 0);
+}
+
 TEST(Associate, NearestElseInterpolatedElseLeftOut) {
   const TimedTrajectory reference(
       {{1, toPose3D({1, 0, 0})}, {2, toPose3D({2, 0, 0})}, {3.25, toPose3D({3, 0, 0})}, {9, {}}});

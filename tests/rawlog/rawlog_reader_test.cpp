@@ -168,15 +168,14 @@ TEST(RawlogReader, ChoosesSensorLabels) {
 
 TEST(RawlogReader, SkipsAndCountsWhatItCannotUse) {
   TempFolder temp;
-  auto tilted = scanAt(1), flipped = scanAt(1.1), empty = scanAt(1.2), flat = scanAt(1.3),
-       shaky = scanAt(1.4);
+  auto tilted = scanAt(1), rolled = scanAt(1.1), empty = scanAt(1.2), flat = scanAt(1.3), shaky = scanAt(1.4);
   tilted.sensorPose = mrpt::poses::CPose3D(0, 0, 0, 0, mrpt::DEG2RAD(6.0), 0);
-  flipped.sensorPose = mrpt::poses::CPose3D(0, 0, 0, 0, 0, M_PI);
+  rolled.sensorPose = mrpt::poses::CPose3D(0, 0, 0, 0, 0, M_PI / 2);
   empty.resizeScan(0);
   flat.aperture = 0;
   shaky.sensorPose = mrpt::poses::CPose3D(0, 0, 0, 0, mrpt::DEG2RAD(4.0), 0);
   LogBuilder log;
-  log.add(tilted).add(flipped).add(empty).add(flat).add(shaky);
+  log.add(tilted).add(rolled).add(empty).add(flat).add(shaky);
   log.add(mrpt::obs::CObservationComment()).add(mrpt::obs::CRawlog());
   RawlogReader reader(log.saveGz(temp.file("a.rawlog")));
   EXPECT_EQ(allFrames(reader).size(), 1u);
@@ -188,6 +187,39 @@ TEST(RawlogReader, SkipsAndCountsWhatItCannotUse) {
   EXPECT_EQ(report.entries, 7u);
   EXPECT_EQ(report.classes.at("mrpt::obs::CObservation2DRangeScan"), 5u);
   EXPECT_EQ(report.classes.at("mrpt::obs::CObservationComment"), 1u);
+}
+
+TEST(RawlogReader, TakesScannersMountedUpsideDown) {
+  TempFolder temp;
+  LogBuilder log;
+  const auto add = [&](double pitch_deg, double roll_deg) {
+    auto scan = scanAt(static_cast<double>(log.ends().size()));
+    scan.sensorPose =
+        mrpt::poses::CPose3D(0.1, 0, 0.3, 0.5, mrpt::DEG2RAD(pitch_deg), mrpt::DEG2RAD(roll_deg));
+    log.add(scan);
+  };
+  for (const double roll : {180.0, -180.0, 176.0, -176.0}) add(0, roll);
+  for (const double roll : {174.0, -174.0, 90.0}) add(0, roll);
+  add(6, 180);
+  RawlogReader reader(log.savePlain(temp.file("a.rawlog")));
+  const auto frames = allFrames(reader);
+  ASSERT_EQ(frames.size(), 4u);
+  EXPECT_EQ(reader.report().skipped_scans_tilted, 4u);
+  const auto pose = frames[0].scans.at(0)->sensorPose;
+  EXPECT_NEAR(pose.yaw(), 0.5, 1e-9);
+  EXPECT_NEAR(std::abs(pose.roll()), M_PI, 1e-9);
+}
+
+TEST(RawlogReader, SaysWhyNoScanIsUsable) {
+  TempFolder temp;
+  auto tilted = scanAt(0), empty = scanAt(2), flat = scanAt(3);
+  tilted.sensorPose = mrpt::poses::CPose3D(0, 0, 0, 0, 0.3, 0);
+  empty.resizeScan(0);
+  flat.aperture = 0;
+  LogBuilder log;
+  log.add(tilted).add(tilted).add(empty).add(flat);
+  EXPECT_THAT(errorOf(log.savePlain(temp.file("a.rawlog"))),
+              AllOf(HasSubstr("2 tilted"), HasSubstr("1 with a senseless"), HasSubstr("1 without beams")));
 }
 
 TEST(RawlogReader, FromAndToByEntry) {
@@ -212,6 +244,45 @@ TEST(RawlogReader, FromAndToBySeconds) {
   EXPECT_THAT(indicesOf(file, "4", "3.5s"), ElementsAre(2, 3));
 }
 
+/** Frames stamped 0, 1, … 19 s, but `count` of them a year later. */
+LogBuilder logWithWrongStamps(int first_wrong, int count, bool with_odometry) {
+  constexpr double kYear_s = 365 * 86400.0;
+  LogBuilder log;
+  for (int k = 0; k < 20; ++k) {
+    if (with_odometry) log.add(odometryAt(k, k, 0, 0));
+    log.add(scanAt(k >= first_wrong && k < first_wrong + count ? k + kYear_s : k));
+  }
+  return log;
+}
+
+TEST(RawlogReader, AFewWrongStampsDoNotEndATimeSpan) {
+  TempFolder temp;
+  ReaderParams params;
+  params.to = "15s";
+  for (const bool with_odometry : {true, false}) {
+    const auto file = logWithWrongStamps(4, 2, with_odometry).savePlain(temp.file("a.rawlog"));
+    RawlogReader reader(file, params);
+    const auto frames = allFrames(reader);
+    ASSERT_EQ(frames.size(), 14u);
+    EXPECT_EQ(frames[3].stamp, at(3));
+    EXPECT_EQ(frames[4].stamp, at(6));
+    for (std::size_t k = 0; k < frames.size(); ++k) EXPECT_EQ(frames[k].index, k);
+    EXPECT_EQ(reader.report().skipped_frames_stamp, 2u);
+    EXPECT_THAT(reader.report().asText(), HasSubstr("2 frames were skipped"));
+  }
+}
+
+TEST(RawlogReader, ManyFramesInARowBehindToAreTheEnd) {
+  TempFolder temp;
+  ReaderParams params;
+  params.to = "15s";
+  RawlogReader nine(logWithWrongStamps(4, 9, false).savePlain(temp.file("nine.rawlog")), params);
+  EXPECT_EQ(allFrames(nine).size(), 7u);
+  RawlogReader ten(logWithWrongStamps(4, 10, false).savePlain(temp.file("ten.rawlog")), params);
+  EXPECT_EQ(allFrames(ten).size(), 4u);
+  EXPECT_EQ(ten.report().skipped_frames_stamp, 0u) << "they are taken for the rest of the log";
+}
+
 TEST(RawlogReader, NothingBetweenFromAndToIsAnError) {
   TempFolder temp;
   LogBuilder log;
@@ -228,6 +299,7 @@ TEST(RawlogReader, DamageBehindToDoesNotMatter) {
   const auto file = temp.write("a.rawlog", log.bytes() + "rubbish");
   EXPECT_THROW(framesOf(file), InputError);
   EXPECT_THAT(indicesOf(file, "", "3"), ElementsAre(0, 1, 2, 3)) << "frames are delayed for odometry to come";
+  EXPECT_THAT(indicesOf(file, "", "3s"), ElementsAre(0, 1, 2, 3));
 }
 
 TEST(RawlogReader, RefusesBadPlaces) {

@@ -145,15 +145,71 @@ TEST(Resume, RefusesAFileThatDoesNotHoldWhatTheSideCarSays) {
 
 TEST(Resume, NamesEveryDifference) {
   const auto run = sampleRun();
-  auto version = run, config = run, log = run, size = run;
+  auto version = run, config = run, log = run, size = run, content = run;
   version.version = "2";
   config.config_hash = "2";
   log.log = "2";
   size.log_bytes = 2;
+  content.log_hash = "2";
   EXPECT_EQ(runDifference(run, version), "another version");
   EXPECT_EQ(runDifference(run, config), "other parameters");
   EXPECT_EQ(runDifference(run, log), "another log");
   EXPECT_EQ(runDifference(run, size), "a log of another size");
+  EXPECT_EQ(runDifference(run, content), "a log of other content");
+}
+
+TEST(Resume, IdentityIsWrittenAndReadBack) {
+  TempFolder temp;
+  const auto file = temp.file("s.rawlog");
+  const SubmapLogWriter writer(file, sampleRun());
+  const auto state = readResumeState(file);
+  ASSERT_TRUE(state);
+  EXPECT_EQ(state->log_hash, sampleRun().log_hash);
+  EXPECT_EQ(runDifference(*state, sampleRun()), "");
+}
+
+TEST(Resume, OnlyOneWriterAtATime) {
+  TempFolder temp;
+  const auto file = temp.file("s.rawlog");
+  const auto refusal = [&](auto open) -> std::string {
+    try {
+      open();
+    } catch (const OutputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  const auto anew = [&] { SubmapLogWriter{file, sampleRun()}; };
+  const auto resumed = [&] { SubmapLogWriter::resume(file, sampleRun()); };
+  {
+    SubmapLogWriter writer(file, sampleRun());
+    writer.appendStretch(sampleSubmaps(0, 1));
+    const auto bytes = readAll(file), state = readAll(resumeFileOf(file));
+    EXPECT_THAT(refusal(anew), AllOf(HasSubstr(file), HasSubstr("another run")));
+    EXPECT_THAT(refusal(resumed), AllOf(HasSubstr(file), HasSubstr("another run")));
+    EXPECT_EQ(readAll(file), bytes);
+    EXPECT_EQ(readAll(resumeFileOf(file)), state);
+    writer.finish();
+    EXPECT_THAT(refusal(resumed), HasSubstr("another run")) << "finished, but still in use";
+  }
+  EXPECT_EQ(refusal(resumed), "no error");
+  EXPECT_EQ(refusal(anew), "no error");
+}
+
+TEST(Resume, HashOfTheEndsOfAFile) {
+  constexpr std::size_t kMegabyte = 1 << 20;
+  TempFolder temp;
+  const auto hashOf = [&](const std::string& content) { return endsHash(temp.write("a", content)); };
+  EXPECT_EQ(hashOf(""), textHash(""));
+  EXPECT_EQ(hashOf("foobar"), textHash("foobar"));
+  const std::string whole(3 * kMegabyte, 'x');
+  EXPECT_EQ(hashOf(whole), textHash(std::string(2 * kMegabyte, 'x')));
+  for (const std::size_t at : {std::size_t{0}, kMegabyte - 1, 2 * kMegabyte, 3 * kMegabyte - 1}) {
+    auto edited = whole;
+    edited[at] = 'y';
+    EXPECT_NE(hashOf(edited), hashOf(whole)) << at;
+  }
+  EXPECT_THROW(endsHash(temp.file("missing")), InputError);
 }
 
 TEST(Resume, WritingToAnImpossiblePlaceIsAnOutputError) {

@@ -40,6 +40,7 @@ inline ResumeState sampleRun() {
   run.config_hash = "abc";
   run.log = "a.rawlog";
   run.log_bytes = 1234;
+  run.log_hash = "def";
   return run;
 }
 

@@ -161,7 +161,7 @@ TEST_F(RawlogFile, HasTruthInTumFormat) {
 
 TEST_F(RawlogFile, ExamplesAreThoseOfTheRepository) {
   writeExampleLogs(folder.string());
-  for (const std::string name : {"room", "corridor_sf", "loop"}) {
+  for (const std::string name : {"room", "corridor_sf", "loop", "non_convex", "long_corridors"}) {
     for (const std::string ending : {".rawlog", ".truth.tum"}) {
       const auto expected = unpacked(SUBMAP_SLAM_SOURCE_DIR "/rawlogs/" + name + ending);
       ASSERT_FALSE(expected.empty()) << name + ending;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <submap_slam/core/errors.h>
 #include <submap_slam/simulation/path.h>
+#include <submap_slam/simulation/scenario.h>
 #include <submap_slam/simulation/world.h>
 
 #include <cmath>
@@ -98,6 +99,8 @@ TEST(SymmetricRooms, DifferOnlyInTheSixth) {
   EXPECT_TRUE(differs(1, 5));
 }
 
+constexpr double kLongestFloor = 100;  // m
+
 class EveryWorld : public testing::TestWithParam<std::string> {
  protected:
   const World world = makeWorld(GetParam());
@@ -115,15 +118,16 @@ TEST_P(EveryWorld, KeepsItsPathClearOfWalls) {
 TEST_P(EveryWorld, IsClosedAroundItsPath) {
   for (std::size_t i = 0; i < path.poses.size(); i += 5)
     for (int degree = 0; degree < 360; ++degree)
-      ASSERT_LT(world.raycast({path.poses[i].x, path.poses[i].y}, degree * kPi / 180), 45.0) << path.poses[i];
+      ASSERT_LT(world.raycast({path.poses[i].x, path.poses[i].y}, degree * kPi / 180), kLongestFloor)
+          << path.poses[i];
 }
 
 TEST_P(EveryWorld, ShowsTheLaserSomethingWithinItsRange) {
-  constexpr double kLaserRange = 10;
+  const double range = makeScenario(GetParam()).laser.max_range;
   int rays = 0, hits = 0;
   for (std::size_t i = 0; i < path.poses.size(); i += 5)
     for (int degree = 0; degree < 360; ++degree, ++rays)
-      hits += world.raycast({path.poses[i].x, path.poses[i].y}, degree * kPi / 180) < kLaserRange;
+      hits += world.raycast({path.poses[i].x, path.poses[i].y}, degree * kPi / 180) < range;
   EXPECT_GT(hits, 0.9 * rays);
 }
 

@@ -73,8 +73,8 @@ std::size_t EvidenceGrid::observedCells() const {
 
 EvidenceGrid EvidenceGrid::cropped() const {
   CellBox box{};
-  if (!observedBox(hits, box)) return {};
   const double r = resolution();
+  if (!observedBox(hits, box)) return EvidenceGrid(0, r, 0, r, r);
   const auto at = [r](double min, std::size_t cells) { return min + r * static_cast<double>(cells); };
   EvidenceGrid out(at(hits.getXMin(), box.x0), at(hits.getXMin(), box.x1 + 1), at(hits.getYMin(), box.y0),
                    at(hits.getYMin(), box.y1 + 1), r);

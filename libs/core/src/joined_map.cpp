@@ -63,6 +63,7 @@ class PlacedEvidence {
     double from = 0, to = count - 1;
     clip(start.x, step.x, -1, evidence_->sizeX(), from, to);
     clip(start.y, step.y, -1, evidence_->sizeY(), from, to);
+    if (from > to) return {0, 0};
     return {static_cast<int>(std::ceil(from)), static_cast<int>(std::floor(to)) + 1};
   }
 

@@ -1,13 +1,12 @@
 #include <submap_slam/core/parameters.h>
 
 #include <fmt/format.h>
-#include <mrpt/config/CConfigFile.h>
 #include <submap_slam/core/errors.h>
+#include <submap_slam/core/ini_file.h>
 
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <filesystem>
 #include <ostream>
 
 namespace submap_slam {
@@ -155,6 +154,18 @@ Parameter& ParameterTable::find(const std::string& section, const std::string& k
                                 nearest ? fmt::format("; did you mean {}?", qualified(*nearest)) : ""));
 }
 
+void ParameterTable::checkSection(const std::string& name) const {
+  const Section* nearest = nullptr;
+  std::size_t best = std::string::npos;
+  for (const auto& s : sections_) {
+    const std::size_t distance = editDistance(s.name, name);
+    if (distance == 0) return;
+    if (distance < best) best = distance, nearest = &s;
+  }
+  throw ConfigError(fmt::format("unknown section [{}]{}", name,
+                                nearest ? fmt::format("; did you mean [{}]?", nearest->name) : ""));
+}
+
 void ParameterTable::set(const std::string& section, const std::string& key, const std::string& value) {
   assign(find(section, key), trimmed(value));
 }
@@ -168,17 +179,16 @@ void ParameterTable::set(const std::string& assignment) {
 }
 
 void ParameterTable::loadIni(const std::string& file) {
-  if (!std::filesystem::is_regular_file(file)) throw InputError(fmt::format("{}: no such ini file", file));
-  const mrpt::config::CConfigFile ini(file);
-  std::vector<std::string> sections, keys;
-  ini.getAllSections(sections);
-  try {
-    for (const auto& section : sections) {
-      ini.getAllKeys(section, keys);
-      for (const auto& key : keys) set(section, key, ini.read_string(section, key, ""));
+  for (const auto& entry : readIni(file)) {
+    try {
+      if (entry.key.empty()) {
+        checkSection(entry.section);
+      } else {
+        set(entry.section, entry.key, entry.value);
+      }
+    } catch (const ConfigError& e) {
+      throw ConfigError(fmt::format("{}:{}: {}", file, entry.line, e.what()));
     }
-  } catch (const ConfigError& e) {
-    throw ConfigError(fmt::format("{}: {}", file, e.what()));
   }
 }
 

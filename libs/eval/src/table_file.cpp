@@ -32,6 +32,8 @@ std::optional<double> toNumber(std::string_view text) {
 /** Nothing for a blank line. */
 std::optional<TableRow> parseLine(std::string_view text, const std::string& where,
                                   const std::string& columns) {
+  if (text.find('\0') != std::string_view::npos)
+    throw InputError(fmt::format("{}: is no text, expected lines of {}", where, columns));
   text = text.substr(0, text.find('#'));
   TableRow row;
   for (std::size_t i = 0; i < row.values.size(); ++i) {

@@ -54,6 +54,8 @@ double alignedHeading(const std::vector<PosePair>& pairs, const TPoint2D& refere
 }
 
 std::string tableRow(const std::string& name, const ErrorStatistics& e) {
+  if (e.count == 0)  // errors of 0 would look perfect
+    return fmt::format("{0:<24} {1:>7} {2:>9} {2:>9} {2:>9} {2:>9} {2:>9} {2:>9}\n", name, 0, "-");
   return fmt::format("{:<24} {:>7} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f}\n", name, e.count,
                      e.mean, e.std, e.rmse, e.median, e.percentile_95, e.max);
 }
@@ -99,6 +101,18 @@ TrajectoryError relativePoseError(const std::vector<PosePair>& pairs, std::size_
     errors.add((b.estimate - a.estimate) - (b.reference - a.reference));
   }
   return errors.statistics();
+}
+
+CoordinateError coordinateError(const std::vector<PosePair>& pairs) {
+  std::vector<double> axes_m, headings_rad;
+  for (const auto& p : pairs) {
+    const TPose2D aligned = pairs[0].reference + (p.estimate - pairs[0].estimate);
+    axes_m.push_back(std::abs(aligned.x - p.reference.x));
+    axes_m.push_back(std::abs(aligned.y - p.reference.y));
+    headings_rad.push_back(std::abs(mrpt::math::wrapToPi(aligned.phi - p.reference.phi)));
+  }
+  const ErrorStatistics axes = errorStatistics(axes_m), headings = errorStatistics(headings_rad);
+  return {axes.mean, axes.rmse, headings.mean, headings.rmse};
 }
 
 std::string formatTable(const TrajectoryError& absolute, const TrajectoryError& relative) {

@@ -4,6 +4,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <cmath>
+
 #include "binary_file.h"
 
 namespace submap_slam {
@@ -44,6 +46,18 @@ void writeG2o(const std::string& file, const std::vector<mrpt::poses::CPosePDFGa
   if (!frames.empty()) text += "FIX 0\n";
   for (const auto& constraint : constraints)
     if (constraint.accepted) text += edgeText(constraint, file);
+  writeBytes(file, text);
+}
+
+void writeConstraints(const std::string& file, const std::vector<Constraint>& constraints) {
+  std::string text = "from,to,kind,accepted,x_m,y_m,phi_rad,sigma_x_m,sigma_y_m,sigma_phi_rad,reason\n";
+  for (const auto& c : constraints) {
+    const auto& cov = c.T_a_b.cov;
+    text += fmt::format("{},{},{},{},{:.4f},{:.4f},{:.5f},{:.4f},{:.4f},{:.5f},\"{}\"\n", c.from, c.to,
+                        c.inter ? "inter" : "intra", c.accepted ? 1 : 0, c.T_a_b.mean.x(), c.T_a_b.mean.y(),
+                        c.T_a_b.mean.phi(), std::sqrt(cov(0, 0)), std::sqrt(cov(1, 1)), std::sqrt(cov(2, 2)),
+                        c.reason);
+  }
   writeBytes(file, text);
 }
 

@@ -46,11 +46,10 @@ void assessContent(const LogReport& r, Findings& add) {
   add.add(r.nested_logs > 0, Severity::kWarning,
           "{} rawlogs are stored inside this rawlog and were skipped; extract them to files of their own.",
           r.nested_logs);
-  add.add(r.skipped_scans_tilted > 0, Severity::kWarning,
-          "{} scans of scanners tilted by more than 5 deg (or mounted upside down) were skipped: a 2D map "
-          "needs a "
-          "horizontal scan plane.",
-          r.skipped_scans_tilted);
+  add.add(
+      r.skipped_scans_tilted > 0, Severity::kWarning,
+      "{} scans of scanners tilted by more than 5 deg were skipped: a 2D map needs a horizontal scan plane.",
+      r.skipped_scans_tilted);
   add.add(r.skipped_scans_empty > 0, Severity::kWarning, "{} scans without beams were skipped.",
           r.skipped_scans_empty);
   add.add(r.skipped_scans_bad > 0, Severity::kWarning,
@@ -58,6 +57,11 @@ void assessContent(const LogReport& r, Findings& add) {
           "log was "
           "converted.",
           r.skipped_scans_bad);
+  add.add(
+      r.skipped_frames_stamp > 0, Severity::kWarning,
+      "{} frames were skipped: they are stamped behind [reader] to, but frames before it follow, so their "
+      "stamps are wrong.",
+      r.skipped_frames_stamp);
   add.add(r.skipped_scans_label > 0, Severity::kInfo, "{} scans were skipped because of sensor_labels.",
           r.skipped_scans_label);
 }

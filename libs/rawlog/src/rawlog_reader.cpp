@@ -12,6 +12,7 @@
 #include <charconv>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "frame_assembler.h"
 #include "log_statistics.h"
@@ -75,6 +76,9 @@ CActionRobotMovement2D::Ptr chooseMovement(const mrpt::obs::CActionCollection& a
   return chosen;
 }
 
+/** So many frames in a row stamped behind `to` are the end; fewer have wrong stamps. */
+constexpr uint64_t kFramesBehindTo = 10;
+
 std::string nameOf(const mrpt::rtti::CObject& object) { return object.GetRuntimeClass()->className; }
 
 }  // namespace
@@ -113,9 +117,10 @@ struct RawlogReader::Impl {
   LogStatistics statistics;
   LogReport report;
   std::optional<mrpt::Clock::time_point> first_stamp;
-  bool started = false;      ///< `from` was reached
-  bool source_done = false;  ///< nothing more to read
-  bool ended = false;        ///< nothing more to deliver, findings are made
+  uint64_t frames_behind_to = 0;  ///< in a row, up to the last one
+  bool started = false;           ///< `from` was reached
+  bool source_done = false;       ///< nothing more to read
+  bool ended = false;             ///< nothing more to deliver, findings are made
 
   std::optional<Frame> next();
   void readEntry();
@@ -130,15 +135,19 @@ struct RawlogReader::Impl {
   bool isBehind(const LogPlace& place, const LoggedFrame& logged, bool inclusive) const;
   void end(const std::optional<LogDamage>& found);
   std::string whyNoFrames() const;
+  std::string whyNoScanIsUsable() const;
 };
 
 std::optional<Frame> RawlogReader::Impl::next() {
   while (!ended) {
     if (auto logged = assembler.pop()) {
       if (isBehind(to, *logged, false)) {
+        if (!to.entry && ++frames_behind_to < kFramesBehindTo) continue;
         end(std::nullopt);  // what lies behind `to` does not matter, damage included
         break;
       }
+      report.skipped_frames_stamp += std::exchange(frames_behind_to, 0);
+      logged->frame.index -= report.skipped_frames_stamp;
       started = started || isBehind(from, *logged, true);
       if (!started) continue;
       statistics.add(logged->frame, params.min_range, report);
@@ -147,7 +156,7 @@ std::optional<Frame> RawlogReader::Impl::next() {
     if (source_done) break;
     readEntry();
   }
-  if (!ended) end(stream.damage());
+  if (!ended) end(frames_behind_to > 0 ? std::nullopt : stream.damage());
   return std::nullopt;
 }
 
@@ -283,7 +292,18 @@ std::string RawlogReader::Impl::whyNoFrames() const {
     return fmt::format("no 2D laser scan with [reader] sensor_labels = {}; the log has {}",
                        params.sensor_labels, found);
   }
-  return fmt::format("no usable 2D laser scan; the file holds {}", content);
+  return fmt::format("no usable 2D laser scan; the file holds {}{}", content, whyNoScanIsUsable());
+}
+
+std::string RawlogReader::Impl::whyNoScanIsUsable() const {
+  std::string reasons;
+  const auto add = [&](uint64_t scans, const char* reason) {
+    if (scans > 0) reasons += fmt::format("{}{} {}", reasons.empty() ? "; scans: " : ", ", scans, reason);
+  };
+  add(report.skipped_scans_tilted, "tilted by more than 5 deg");
+  add(report.skipped_scans_bad, "with a senseless aperture, maximum range or sensor pose");
+  add(report.skipped_scans_empty, "without beams");
+  return reasons;
 }
 
 RawlogReader::RawlogReader(const std::string& file, const ReaderParams& params)

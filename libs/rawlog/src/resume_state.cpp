@@ -2,6 +2,7 @@
 #include <submap_slam/core/errors.h>
 #include <submap_slam/rawlog/resume_state.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -10,8 +11,8 @@
 
 namespace submap_slam {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ResumeState, version, config_hash, log, log_bytes, stretches_done,
-                                   submaps_done, submap_bytes, complete)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ResumeState, version, config_hash, log, log_bytes, log_hash,
+                                   stretches_done, submaps_done, submap_bytes, complete)
 
 std::string resumeFileOf(const std::string& submap_file) { return submap_file + ".resume.json"; }
 
@@ -32,7 +33,8 @@ void writeResumeState(const std::string& submap_file, const ResumeState& state) 
   const auto next = file + ".new";
   {
     const std::string text = nlohmann::json(state).dump(2) + "\n";
-    DurableFile out(next, 0);
+    DurableFile out(next);
+    out.cutTo(0);
     out.append(text.data(), text.size());
     out.sync();
   }
@@ -47,7 +49,22 @@ std::string runDifference(const ResumeState& a, const ResumeState& b) {
   if (a.config_hash != b.config_hash) return "other parameters";
   if (a.log != b.log) return "another log";
   if (a.log_bytes != b.log_bytes) return "a log of another size";
+  if (a.log_hash != b.log_hash) return "a log of other content";
   return "";
+}
+
+std::string endsHash(const std::string& file) {
+  constexpr uint64_t kEndBytes = 1 << 20;
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  if (!in) throw InputError(fmt::format("{}: cannot be opened", file));
+  const auto size = static_cast<uint64_t>(in.tellg());
+  const uint64_t front = std::min(size, kEndBytes), back = std::min(size - front, kEndBytes);
+  std::string ends(front + back, '\0');
+  in.seekg(0).read(ends.data(), static_cast<std::streamsize>(front));
+  in.seekg(static_cast<std::streamoff>(size - back));
+  in.read(ends.data() + front, static_cast<std::streamsize>(back));
+  if (!in) throw InputError(fmt::format("{}: cannot be read", file));
+  return textHash(ends);
 }
 
 std::string textHash(const std::string& text) {

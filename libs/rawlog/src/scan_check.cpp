@@ -1,7 +1,9 @@
 #include "scan_check.h"
 
 #include <mrpt/core/bits_math.h>
+#include <mrpt/math/wrap2pi.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -14,6 +16,12 @@ const double kMaxTilt = mrpt::DEG2RAD(5.0);
 bool isFinite(const mrpt::math::TPose3D& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.z) && std::isfinite(pose.yaw) &&
          std::isfinite(pose.pitch) && std::isfinite(pose.roll);
+}
+
+/** Whether the scan plane is horizontal; that of a scanner mounted upside down (roll = π) is too. */
+bool isLevel(const mrpt::math::TPose3D& pose) {
+  const double roll = std::abs(mrpt::math::wrapToPi(pose.roll));
+  return std::min(roll, M_PI - roll) <= kMaxTilt && std::abs(pose.pitch) <= kMaxTilt;
 }
 
 /** Corrupt data can leave a bool that is neither true nor false, which must not be used as one. */
@@ -33,8 +41,7 @@ ScanVerdict judge(const mrpt::obs::CObservation2DRangeScan& scan) {
                      scan.maxRange > 0 && std::isfinite(scan.aperture) && scan.aperture > 0 &&
                      scan.aperture <= full_turn;
   if (!sound) return ScanVerdict::kBadGeometry;
-  if (std::abs(pose.roll) > kMaxTilt || std::abs(pose.pitch) > kMaxTilt) return ScanVerdict::kTilted;
-  return ScanVerdict::kUsable;
+  return isLevel(pose) ? ScanVerdict::kUsable : ScanVerdict::kTilted;
 }
 
 void invalidateBeams(mrpt::obs::CObservation2DRangeScan& scan, double min_range, ScannerReport& counts) {

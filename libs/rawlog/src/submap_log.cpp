@@ -37,6 +37,7 @@ ResumeState newRun(const ResumeState& run) {
   state.config_hash = run.config_hash;
   state.log = run.log;
   state.log_bytes = run.log_bytes;
+  state.log_hash = run.log_hash;
   return state;
 }
 
@@ -111,31 +112,40 @@ RecoveredSubmaps recoverSubmaps(const std::string& file) {
   return recovered;
 }
 
+SubmapLogWriter::SubmapLogWriter(std::string file)
+    : file_(std::move(file)), out_(std::make_unique<DurableFile>(file_)) {}
+
 SubmapLogWriter::SubmapLogWriter(std::string file, const ResumeState& run)
-    : file_(std::move(file)), state_(newRun(run)) {
+    : SubmapLogWriter(std::move(file)) {
+  start(run);
+}
+
+void SubmapLogWriter::start(const ResumeState& run) {
+  state_ = newRun(run);
   // a side-car of an earlier run must not vouch for the new, empty file
   std::error_code ignored;
   std::filesystem::remove(resumeFileOf(file_), ignored);
-  out_ = std::make_unique<DurableFile>(file_, 0);
+  out_->cutTo(0);
   out_->sync();
   writeResumeState(file_, state_);
 }
 
 SubmapLogWriter SubmapLogWriter::resume(const std::string& file, const ResumeState& run) {
+  SubmapLogWriter writer(file);  // locked before anything is read: what follows cannot change meanwhile
   const auto state = readResumeState(file);
-  if (!state) return SubmapLogWriter(file, run);
+  if (!state) {
+    writer.start(run);
+    return writer;
+  }
   if (const auto key = runDifference(*state, run); !key.empty())
     throw InputError(
         fmt::format("{}: cannot be resumed, it belongs to a run with {}", resumeFileOf(file), key));
   checkFront(file, *state);
-  SubmapLogWriter writer;
-  writer.file_ = file;
   writer.state_ = *state;
-  if (!state->complete) writer.out_ = std::make_unique<DurableFile>(file, state->submap_bytes);
+  if (!state->complete) writer.out_->cutTo(state->submap_bytes);
   return writer;
 }
 
-SubmapLogWriter::SubmapLogWriter() = default;
 SubmapLogWriter::~SubmapLogWriter() = default;
 SubmapLogWriter::SubmapLogWriter(SubmapLogWriter&&) noexcept = default;
 SubmapLogWriter& SubmapLogWriter::operator=(SubmapLogWriter&&) noexcept = default;

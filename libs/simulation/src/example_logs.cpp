@@ -1,34 +1,38 @@
-#include <submap_slam/simulation/simulate.h>
+#include <submap_slam/simulation/scenario.h>
 
 namespace submap_slam {
 namespace {
 
-/** A recording that is bundled with the project. */
-struct Example {
-  std::string file;  ///< without extension
-  World world;
-  double max_speed;  ///< m/s
-  RawlogForm form;
-  uint64_t seed;
-};
+Scenario atSpeed(const std::string& world, double speed) {
+  Scenario scenario = makeScenario(world);
+  scenario.drive.max_speed = speed;
+  return scenario;
+}
 
-void writeExample(const std::string& folder, const Example& example) {
-  constexpr double kScanRate = 5;  // Hz
-  DriveLimits limits;
-  limits.max_speed = example.max_speed;
-  const Path path = drive(example.world.route, limits, kScanRate);
-  const SimulatedLog log = simulate(example.world, path, LaserModel{}, OdometryModel{}, example.seed);
-  const std::string stem = folder + "/" + example.file;
-  writeRawlog(stem + ".rawlog", log, example.form);
+/** Fewer scans and beams, so that the file is small; odometry then errs at every scan. */
+Scenario small(const std::string& world) {
+  Scenario scenario = makeScenario(world);
+  scenario.scan_rate = 3;
+  scenario.laser.beams = 181;
+  scenario.odometry.fixed_every = 1;
+  return scenario;
+}
+
+void writeExample(const std::string& stem, const Scenario& scenario, RawlogForm form, uint64_t seed) {
+  const SimulatedLog log = simulate(scenario, seed);
+  writeRawlog(stem + ".rawlog", log, form);
   writeTruth(stem + ".truth.tum", log.truth);
 }
 
 }  // namespace
 
 void writeExampleLogs(const std::string& folder) {
-  writeExample(folder, {"room", roomWorld(), 0.8, RawlogForm::kObservations, 1});
-  writeExample(folder, {"corridor_sf", corridorWorld(), 1.0, RawlogForm::kActions, 2});
-  writeExample(folder, {"loop", loopWorld(), 1.0, RawlogForm::kObservations, 3});
+  const std::string in = folder + "/";
+  writeExample(in + "room", atSpeed("room", 0.8), RawlogForm::kObservations, 1);
+  writeExample(in + "corridor_sf", atSpeed("corridor", 1.0), RawlogForm::kActions, 2);
+  writeExample(in + "loop", atSpeed("loop", 1.0), RawlogForm::kObservations, 3);
+  writeExample(in + "non_convex", small("non_convex"), RawlogForm::kObservations, 4);
+  writeExample(in + "long_corridors", small("long_corridors"), RawlogForm::kObservations, 5);
 }
 
 }  // namespace submap_slam

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 #include <mrpt/io/CMemoryStream.h>
-#include <mrpt/io/zip.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CObservationOdometry.h>
@@ -8,9 +7,11 @@
 #include <mrpt/serialization/CArchive.h>
 #include <submap_slam/core/errors.h>
 #include <submap_slam/simulation/simulate.h>
+#include <zlib.h>
 
 #include <cmath>
 #include <fstream>
+#include <limits>
 
 namespace submap_slam {
 namespace {
@@ -47,6 +48,28 @@ TPose2D incrementTo(std::size_t k, const std::vector<Frame>& frames) {
   return *frames[k].odometry - *frames[k - 1].odometry;
 }
 
+/** In memory, because MRPT's gzip file stream does not tell when a disk is full, and its compression in
+ * memory goes through a temporary file whose name processes that run side by side may share. */
+std::string gzip(const void* data, std::size_t size) {
+  if (size > std::numeric_limits<uInt>::max())
+    throw OutputError("a rawlog of more than 4 GB cannot be packed");
+  constexpr int kGzipWindowBits = 15 + 16, kMemoryLevel = 8;
+  z_stream stream{};
+  if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, kGzipWindowBits, kMemoryLevel,
+                   Z_DEFAULT_STRATEGY) != Z_OK)
+    throw OutputError("the compression of a rawlog cannot start");
+  std::string packed(deflateBound(&stream, size), '\0');
+  stream.next_in = static_cast<Bytef*>(const_cast<void*>(data));
+  stream.avail_in = static_cast<uInt>(size);
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = static_cast<uInt>(packed.size());
+  const int result = deflate(&stream, Z_FINISH);
+  packed.resize(stream.total_out);
+  deflateEnd(&stream);
+  if (result != Z_STREAM_END) throw OutputError("a rawlog cannot be compressed");
+  return packed;
+}
+
 void writeFile(const std::string& file, const char* bytes, std::size_t size) {
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   if (!out) throw OutputError(file + ": cannot be opened for writing");
@@ -58,7 +81,6 @@ void writeFile(const std::string& file, const char* bytes, std::size_t size) {
 }  // namespace
 
 void writeRawlog(const std::string& file, const SimulatedLog& log, RawlogForm form) {
-  constexpr int kBestCompression = 9;
   constexpr uint64_t kGrowth = 1 << 20;  // bytes; MRPT's default of 4 kB copies too often
   mrpt::io::CMemoryStream stream;
   stream.setAllocBlockSize(kGrowth);
@@ -69,13 +91,8 @@ void writeRawlog(const std::string& file, const SimulatedLog& log, RawlogForm fo
     else
       writeActionAndSensoryFrame(archive, log.frames[k], incrementTo(k, log.frames));
   }
-  // In memory, because MRPT's gzip file stream does not tell when a disk is full.
-  const auto* begin = static_cast<const uint8_t*>(stream.getRawBufferData());
-  const std::vector<uint8_t> plain(begin, begin + stream.getTotalBytesCount());
-  std::vector<uint8_t> packed;
-  if (!mrpt::io::zip::compress_gz_data_block(plain, packed, kBestCompression))
-    throw OutputError(file + ": cannot be compressed");
-  writeFile(file, reinterpret_cast<const char*>(packed.data()), packed.size());
+  const std::string packed = gzip(stream.getRawBufferData(), stream.getTotalBytesCount());
+  writeFile(file, packed.data(), packed.size());
 }
 
 void writeTruth(const std::string& file, const Trajectory& truth) {

@@ -33,9 +33,6 @@ struct Parameter {
   std::string value() const;
 };
 
-/** "section.key=value" assignments, from an ini file or the command line. */
-using Assignments = std::vector<std::pair<std::string, std::string>>;
-
 /** The parameters of a program, in the order they are documented.
  *
  * The table points into parameter structs, which must outlive it. Every setter throws ConfigError naming the
@@ -61,8 +58,8 @@ class ParameterTable {
   /** Sets one parameter from "section.key=value". */
   void set(const std::string& assignment);
 
-  /** Sets every key found in an ini file; throws InputError if it cannot be read, ConfigError for anything
-   * unknown. */
+  /** Sets every key found in an ini file (form: see readIni); throws InputError if it cannot be read, and
+   * ConfigError naming file and line for anything else than known sections and keys, each set once. */
   void loadIni(const std::string& file);
 
   /** The effective values as an ini file, with a comment above each key. */
@@ -75,6 +72,7 @@ class ParameterTable {
 
  private:
   Parameter& find(const std::string& section, const std::string& key);
+  void checkSection(const std::string& name) const;
   void addTarget(const std::string& key, Parameter::Target target, const std::string& unit, Range range,
                  const std::string& description, std::vector<std::string> choices);
 

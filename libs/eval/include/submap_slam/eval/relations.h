@@ -42,7 +42,7 @@ struct RelationsResult {
 RelationsResult evaluateRelations(const std::vector<Relation>& relations, const TimedTrajectory& trajectory,
                                   const RelationsOptions& options = {});
 
-/** All relations, and apart the local (|t2 − t1| ≤ split) and the global ones (≥ split; loop closures). */
+/** All relations, and apart the local (|t2 − t1| ≤ split) and the global ones (> split; loop closures). */
 struct RelationsReport {
   double split_s = 60;
   RelationsResult all, local, global;

@@ -39,6 +39,16 @@ TrajectoryError absoluteTrajectoryError(const std::vector<PosePair>& pairs);
  * @param delta pairs to step over, at least 1 */
 TrajectoryError relativePoseError(const std::vector<PosePair>& pairs, std::size_t delta = 1);
 
+/** Errors of single coordinates, as published for simulations: means over poses and axes. */
+struct CoordinateError {
+  double mae_m = 0, rmse_m = 0;      ///< of x and y in the reference's frame
+  double mae_rad = 0, rmse_rad = 0;  ///< of the heading
+};
+
+/** Coordinate errors after the estimate is moved so that its first pose is that of the reference; all zero
+ * for no pairs. */
+CoordinateError coordinateError(const std::vector<PosePair>& pairs);
+
 /** A table for people. */
 std::string formatTable(const TrajectoryError& absolute, const TrajectoryError& relative);
 

@@ -80,6 +80,7 @@ struct LogReport {
   uint64_t skipped_scans_tilted = 0;               ///< scan plane more than 5° off the horizontal
   uint64_t skipped_scans_empty = 0;                ///< no beams
   uint64_t skipped_scans_bad = 0;                  ///< aperture, maximum range or sensor pose make no sense
+  uint64_t skipped_frames_stamp = 0;               ///< stamped behind `to`, but followed by frames before it
   std::map<std::string, uint64_t> skipped_labels;  ///< sensor labels that were left out, with counts
   uint64_t nested_logs = 0;                        ///< CRawlog objects inside the rawlog
 

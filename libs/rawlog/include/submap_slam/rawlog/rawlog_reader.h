@@ -34,7 +34,9 @@ void describe(ParameterTable& table, ReaderParams& params);
  * **Frames.** Scans keep the order of the file, whatever their stamps say. Scans of different sensors with
  * the same stamp become one frame; so do all scans of one sensory frame that have the same stamp.
  * Frame::index counts the frames of the whole log, also with `from`. `from` … `to` choose one part of the
- * file: it starts with the first frame at or after `from` and ends before the first frame after `to`.
+ * file: it starts with the first frame at or after `from` and ends before the first frame after `to`. Where
+ * `to` is a time, it takes ten frames in a row behind it to end; fewer have wrong stamps and are left out, as
+ * if the log did not have them.
  *
  * **Odometry.** In an observation log it is interpolated linearly (heading along the shorter way) between the
  * readings before and after the stamp; a reading with the very stamp is used as it is. Outside of all
@@ -46,8 +48,8 @@ void describe(ParameterTable& table, ReaderParams& params);
  *
  * **Scans.** NaN, infinite and negative ranges become 0 and invalid; ranges below `min_range` and at or above
  * the scanner's maximum (no return) keep their value and become invalid. Scans without beams, with a
- * senseless geometry or from a scanner tilted by more than 5° (also: upside down) are left out. All of it is
- * counted in the report.
+ * senseless geometry or from a scanner tilted by more than 5° are left out; one mounted upside down (roll =
+ * π) is not tilted. All of it is counted in the report.
  */
 class RawlogReader {
  public:

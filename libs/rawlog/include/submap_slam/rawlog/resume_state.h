@@ -13,6 +13,7 @@ struct ResumeState {
   std::string config_hash;  ///< of every parameter that the submaps depend on
   std::string log;          ///< name of the rawlog, without its folder
   uint64_t log_bytes = 0;   ///< size of the rawlog
+  std::string log_hash;     ///< of both ends of the rawlog, see endsHash
 
   // progress
   uint64_t stretches_done = 0;
@@ -34,6 +35,10 @@ void writeResumeState(const std::string& submap_file, const ResumeState& state);
 /** Text naming the first part of the identity that differs, for example "other parameters"; empty if it is
  * the same run. */
 std::string runDifference(const ResumeState& a, const ResumeState& b);
+
+/** textHash of the first and the last megabyte of a file: tells most edits at little cost, also of a file
+ * that keeps its size. Throws InputError. */
+std::string endsHash(const std::string& file);
 
 /** 16 hex digits (FNV-1a, 64 bits) that identify a text such as the effective configuration. */
 std::string textHash(const std::string& text);

@@ -61,6 +61,8 @@ RecoveredSubmaps recoverSubmaps(const std::string& file);
  * only the stretch being built. Same submaps, same bytes, however often the run was interrupted: resuming
  * drops what the side-car does not vouch for. Not for use by several threads at once.
  *
+ * The file is locked as long as the writer lives; a second writer of it, in whatever process, is refused.
+ *
  * Every write that fails throws OutputError naming the file.
  */
 class SubmapLogWriter {
@@ -87,11 +89,12 @@ class SubmapLogWriter {
   const ResumeState& state() const { return state_; }
 
  private:
-  SubmapLogWriter();
+  explicit SubmapLogWriter(std::string file);
+  void start(const ResumeState& run);
 
   std::string file_;
   ResumeState state_;
-  std::unique_ptr<DurableFile> out_;  ///< none if the file is complete
+  std::unique_ptr<DurableFile> out_;
 };
 
 /** One serialized object as a gzip member; the same object always gives the same bytes. Throws OutputError if

@@ -40,9 +40,9 @@ void writeRawlog(const std::string& file, const SimulatedLog& log, RawlogForm fo
  * naming the file. */
 void writeTruth(const std::string& file, const Trajectory& truth);
 
-/** Writes the example logs of this project into an existing folder: room.rawlog and loop.rawlog
- * (observations), corridor_sf.rawlog (actions), each with its .truth.tum. Throws OutputError naming the file.
- */
+/** Writes the example logs of this project into an existing folder: room.rawlog, loop.rawlog,
+ * non_convex.rawlog and long_corridors.rawlog (observations), corridor_sf.rawlog (actions), each with its
+ * .truth.tum. Throws OutputError naming the file. */
 void writeExampleLogs(const std::string& folder);
 
 }  // namespace submap_slam

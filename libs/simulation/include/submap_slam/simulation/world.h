@@ -52,7 +52,20 @@ World symmetricRoomsWorld();
  * times around. */
 World loopWorld();
 
-/** Names that makeWorld() knows: room, corridor, periodic_corridor, symmetric_rooms, loop. */
+/** A hall of 50 × 50 m with obstacles that are not convex: hooks, bays, tees and stars at odd angles. The
+ * route winds between them and returns to its start. */
+World nonConvexWorld();
+
+/** Corridors of 3 m width around and through a square of 50 × 50 m, with few shallow niches. The
+ * route goes around one block and some way on. */
+World longCorridorsWorld();
+
+/** An office floor of 30 × 100 m: two long corridors with offices on the outside, joined by four cross
+ * corridors. The route closes three loops and returns to its start. */
+World officeFloorWorld();
+
+/** Names that makeWorld() knows: room, corridor, periodic_corridor, symmetric_rooms, loop, non_convex,
+ * long_corridors, floor. */
 std::vector<std::string> worldNames();
 
 /** The world of that name; throws ConfigError, listing the names there are, for any other. */

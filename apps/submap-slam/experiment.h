@@ -1,0 +1,54 @@
+/** What an experiment is: data × settings × seeds, and the figures to tabulate. */
+#pragma once
+
+#include <submap_slam/simulation/scenario.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace submap_slam {
+
+/** Section [data NAME]: a simulated world, or a recording with something to judge the result by. */
+struct ExperimentData {
+  std::string name;
+  std::string world;                    ///< to simulate once for each seed; empty: a recording
+  std::vector<std::string> simulation;  ///< "simulation.key=value", for a world
+  std::string log, truth, relations;    ///< files of a recording; truth and relations may be empty
+};
+
+/** Section [setting NAME]: how the data are mapped. */
+struct ExperimentSetting {
+  std::string name;
+  std::string baseline;               ///< empty: the pipeline of `map`; else whose poses are taken instead
+  std::vector<std::string> settings;  ///< "section.key=value"
+};
+
+/** A figure of a cell and how tables show it. */
+struct ExperimentColumn {
+  std::string key, label;
+  int decimals;
+};
+
+/** An experiment file. Each combination of data, setting and seed is one cell. */
+struct Experiment {
+  std::string title;
+  std::vector<ExperimentData> data;
+  std::vector<ExperimentSetting> settings;
+  std::vector<uint64_t> seeds;
+  std::vector<ExperimentColumn> columns;
+};
+
+/** All columns there are. */
+const std::vector<ExperimentColumn>& experimentColumns();
+
+/** Reads an experiment file.
+ * @param overrides   "experiment.key=value"
+ * @param data_folder where relative files of recordings are; empty: the folder of `file`
+ *
+ * Throws InputError if a file is missing, ConfigError for anything unknown, wrong settings of the pipeline
+ * and of the simulation included, so that nothing runs that cannot end. */
+Experiment loadExperiment(const std::string& file, const std::vector<std::string>& overrides,
+                          const std::string& data_folder);
+
+}  // namespace submap_slam

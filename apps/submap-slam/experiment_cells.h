@@ -1,0 +1,42 @@
+/** Runs the cells of an experiment, each in a folder and a process of its own. */
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "experiment.h"
+#include "reporter.h"
+
+namespace submap_slam {
+
+/** How the run of an experiment uses the machine. */
+struct ExperimentRun {
+  std::filesystem::path folder;  ///< data/ gets the simulated logs, cells/DATA/SETTING/SEED/ the results
+  int jobs = 1;                  ///< cells at a time
+  int threads = 0;               ///< of each cell; 0: an equal share of the machine's
+};
+
+/** What is known of a cell. */
+struct CellResult {
+  std::map<std::string, double>
+      figures;        ///< by the keys of experimentColumns(); what does not apply is missing
+  std::string error;  ///< why there are none; empty also if the cell has not run
+};
+
+/** Where the results of a cell are. */
+std::filesystem::path cellFolder(const std::filesystem::path& experiment_folder, const ExperimentData& data,
+                                 const ExperimentSetting& setting, uint64_t seed);
+
+/** Names of the cells with "complete" or "to do", one a line. */
+std::string listCells(const Experiment& experiment, const std::filesystem::path& folder);
+
+/** Runs all cells that have no complete result of the same program, data and parameters yet. Returns false if
+ * a stop signal ended it early. */
+bool runCells(const Experiment& experiment, const ExperimentRun& run, Reporter& reporter);
+
+/** The result of a cell as it is on disk. */
+CellResult readCell(const std::filesystem::path& folder);
+
+}  // namespace submap_slam

@@ -1,0 +1,112 @@
+#include <fmt/format.h>
+#include <submap_slam/core/errors.h>
+#include <submap_slam/output/output_directory.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include "commands.h"
+#include "experiment_cells.h"
+#include "experiment_table.h"
+
+namespace submap_slam {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr const char* kExperimentFile = "experiment.ini";
+
+struct ExperimentOptions {
+  std::string file, data_folder;
+  std::vector<std::string> settings;
+  ExperimentRun run;
+  bool list = false, quiet = false;
+};
+
+/** The folder, new or of an earlier run of an experiment, and the description in it. */
+void openExperimentFolder(const ExperimentOptions& options) {
+  const fs::path& folder = options.run.folder;
+  const fs::path record = folder / kExperimentFile;
+  const OutputDirectory out(folder, fs::exists(record));
+  if (fs::exists(record) && fs::equivalent(record, options.file)) return;
+  fs::copy_file(options.file, record, fs::copy_options::overwrite_existing);
+  std::ofstream ini(record, std::ios::app);
+  for (const auto& setting : options.settings) ini << "# run with --set " << setting << '\n';
+  ini.close();
+  if (!ini) throw OutputError(fmt::format("{}: cannot be written", record.string()));
+}
+
+int runExperiment(ExperimentOptions& options) {
+  const Experiment experiment = loadExperiment(options.file, options.settings, options.data_folder);
+  fs::path& folder = options.run.folder;
+  if (folder.empty()) folder = fs::path(options.file).stem();
+  if (options.list) {
+    fmt::print("{}", listCells(experiment, folder));
+    return kSuccess;
+  }
+  openExperimentFolder(options);
+  Reporter reporter(options.quiet);
+  const bool finished = runCells(experiment, options.run, reporter);
+  const std::size_t missing = writeTables(experiment, folder);
+  const std::string table = (folder / "table.md").string();
+  if (!finished) {
+    reporter.note(
+        fmt::format("stopped; {} has what is complete; give the same command again to go on", table));
+    return kInterrupted;
+  }
+  if (missing > 0) {
+    reporter.warning(fmt::format("{} cells failed; {} says why", missing, table));
+    return kFailure;
+  }
+  reporter.note("table: " + table);
+  return kSuccess;
+}
+
+std::string columnList() {
+  std::string list;
+  for (const auto& column : experimentColumns()) list += (list.empty() ? "" : ", ") + column.key;
+  return list;
+}
+
+}  // namespace
+
+void addExperimentCommand(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<ExperimentOptions>();
+  CLI::App* command =
+      app.add_subcommand("experiment", "Runs data sets, settings and seeds of an ini file into one table");
+  command->add_option("experiment", options->file, "What to run; docs/experiments.md explains the file")
+      ->required()
+      ->type_name("FILE.ini");
+  command
+      ->add_option("-o,--output", options->run.folder,
+                   "Folder for cells and table (default: name of the ini file without .ini)")
+      ->type_name("OUT");
+  command
+      ->add_option("--data", options->data_folder,
+                   "Folder of the recordings that the ini file names (default: its own)")
+      ->type_name("FOLDER");
+  command
+      ->add_option("--set", options->settings, "Overrides a key of [experiment]; may be given several times")
+      ->allow_extra_args(false)
+      ->type_name("experiment.KEY=VALUE");
+  command->add_option("--jobs", options->run.jobs, "Cells that run at the same time; 1 if times matter")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str()
+      ->type_name("N");
+  command
+      ->add_option("--threads", options->run.threads,
+                   "Threads of each cell (default: all, shared by the jobs)")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+  command->add_flag("--list", options->list, "Only list the cells and which are complete");
+  command->add_flag("-q,--quiet", options->quiet, "No progress and no summary");
+  command->footer(
+      "An experiment that was stopped goes on when the same command is given again: complete cells are "
+      "kept.\n"
+      "Columns: " +
+      columnList() +
+      "\nExample: submap-slam experiment ini/experiments/grid_joining/table2_poses.ini -o table2 --jobs 2");
+  command->callback([options, &exit_code] { exit_code = runExperiment(*options); });
+}
+
+}  // namespace submap_slam

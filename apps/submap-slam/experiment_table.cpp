@@ -1,0 +1,117 @@
+#include "experiment_table.h"
+
+#include <fmt/format.h>
+#include <submap_slam/core/errors.h>
+#include <submap_slam/core/version.h>
+#include <submap_slam/eval/error_statistics.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "experiment_cells.h"
+
+namespace submap_slam {
+namespace fs = std::filesystem;
+namespace {
+
+/** Data × setting: the cells of all seeds. */
+struct Row {
+  std::string data, setting;
+  std::vector<CellResult> cells;
+  std::string note;  ///< failed and missing cells
+
+  std::size_t complete() const {
+    return static_cast<std::size_t>(
+        std::count_if(cells.begin(), cells.end(), [](const auto& c) { return !c.figures.empty(); }));
+  }
+
+  ErrorStatistics statistics(const std::string& key) const {
+    std::vector<double> values;
+    for (const auto& cell : cells)
+      if (const auto figure = cell.figures.find(key); figure != cell.figures.end())
+        values.push_back(figure->second);
+    return errorStatistics(values);
+  }
+};
+
+std::vector<Row> rowsOf(const Experiment& experiment, const fs::path& folder) {
+  std::vector<Row> rows;
+  for (const auto& data : experiment.data)
+    for (const auto& setting : experiment.settings) {
+      Row row{data.name, setting.name, {}, ""};
+      for (const uint64_t seed : experiment.seeds) {
+        const CellResult cell = readCell(cellFolder(folder, data, setting, seed));
+        row.cells.push_back(cell);
+        if (!cell.figures.empty()) continue;
+        row.note += fmt::format("{}seed {}: {}", row.note.empty() ? "" : "; ", seed,
+                                cell.error.empty() ? "not run" : cell.error);
+      }
+      rows.push_back(std::move(row));
+    }
+  return rows;
+}
+
+std::string markdown(const Experiment& experiment, const std::vector<Row>& rows) {
+  std::string text = fmt::format("# {}\n\n| data | setting | runs |", experiment.title);
+  for (const auto& column : experiment.columns) text += fmt::format(" {} |", column.label);
+  text += "\n|---|---|---|";
+  for (std::size_t i = 0; i < experiment.columns.size(); ++i) text += "---|";
+  for (const auto& row : rows) {
+    text += fmt::format("\n| {} | {} | {} |", row.data, row.setting, row.complete());
+    for (const auto& column : experiment.columns) {
+      const ErrorStatistics s = row.statistics(column.key);
+      if (s.count == 0) {
+        text += " – |";
+      } else if (s.count == 1) {
+        text += fmt::format(" {:.{}f} |", s.mean, column.decimals);
+      } else {
+        text += fmt::format(" {:.{}f} ± {:.{}f} |", s.mean, column.decimals, s.std, column.decimals);
+      }
+    }
+    if (!row.note.empty()) text += fmt::format(" failed: {} |", row.note);
+  }
+  return text + fmt::format("\n\nMean ± standard deviation over seeds {}; submap-slam {}.\n",
+                            fmt::join(experiment.seeds, ", "), version());
+}
+
+/** RFC 4180. */
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return result + '"';
+}
+
+std::string csv(const Experiment& experiment, const std::vector<Row>& rows) {
+  std::string text = "data,setting,runs";
+  for (const auto& column : experiment.columns) text += fmt::format(",{0}_mean,{0}_std", column.key);
+  text += ",failed\n";
+  for (const auto& row : rows) {
+    text += fmt::format("{},{},{}", row.data, row.setting, row.complete());
+    for (const auto& column : experiment.columns) {
+      const ErrorStatistics s = row.statistics(column.key);
+      text += s.count == 0 ? ",," : fmt::format(",{},{}", s.mean, s.std);
+    }
+    text += "," + (row.note.empty() ? "" : quoted(row.note)) + "\n";
+  }
+  return text;
+}
+
+void writeText(const fs::path& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw OutputError(fmt::format("{}: cannot be written", file.string()));
+}
+
+}  // namespace
+
+std::size_t writeTables(const Experiment& experiment, const fs::path& folder) {
+  const auto rows = rowsOf(experiment, folder);
+  writeText(folder / "table.md", markdown(experiment, rows));
+  writeText(folder / "table.csv", csv(experiment, rows));
+  std::size_t missing = 0;
+  for (const auto& row : rows) missing += row.cells.size() - row.complete();
+  return missing;
+}
+
+}  // namespace submap_slam

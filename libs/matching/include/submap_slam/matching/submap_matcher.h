@@ -1,0 +1,65 @@
+#pragma once
+
+#include <submap_slam/mapping/scan_matcher.h>
+#include <submap_slam/matching/branch_and_bound.h>
+#include <submap_slam/matching/map_agreement.h>
+#include <submap_slam/matching/submap_surface.h>
+#include <Eigen/Core>
+
+#include <memory>
+#include <optional>
+
+namespace submap_slam {
+
+struct SubmapMatcherParams {
+  SurfelMapParams map;
+  MatcherParams matcher;
+  ScorePyramidParams pyramid;
+  SurfaceParams surface;
+  AgreementParams agreement;
+  RivalParams rivals;
+  double min_score = 0.42;  ///< of the search of the window
+};
+
+/** Where another submap fits best into a reference submap, and how well. */
+struct SubmapMatch {
+  mrpt::math::TPose2D T_ref_other;
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< Hessian of the point-to-line match at that pose
+  double score = 0;                                       ///< of the search of the window
+  double rival_score = 0;                                 ///< see WindowMatch
+  double hit_share = 0;  ///< of the better direction: other's surfaces in the reference or the reverse
+  double agreement = 0;  ///< with free space, of the worse direction
+};
+
+/** A submap to which others are matched: by branch and bound in a window, then by points to lines.
+ *
+ * Holds the matching map of the reference, a few MB; any number of threads may match to it at once.
+ */
+class SubmapMatcher {
+ public:
+  SubmapMatcher(const GridSubmap& reference, const SubmapMatcherParams& params);
+
+  const SubmapSurface& surface() const { return surface_; }
+  const SurfelMap& surfels() const { return surfels_; }
+
+  /** Best match in the window of T_ref_other; empty if none reaches min_score.
+   * @param other    evidence of the other submap
+   * @param surface  its surface */
+  std::optional<SubmapMatch> match(const PackedEvidence& other, const SubmapSurface& surface,
+                                   const PoseWindow& window) const;
+
+ private:
+  MatchResult refine(const SubmapSurface& surface, const mrpt::math::TPose2D& start) const;
+
+  SubmapMatcherParams params_;
+  std::shared_ptr<const PackedEvidence> evidence_;
+  SurfelMap surfels_;
+  SubmapSurface surface_;
+  ScorePyramid pyramid_;
+  ScanMatcher matcher_;
+};
+
+/** The packed evidence of a submap, which stays as it is: loaded or not. */
+std::shared_ptr<const PackedEvidence> packedEvidenceOf(const GridSubmap& submap);
+
+}  // namespace submap_slam

@@ -1,0 +1,58 @@
+#include <submap_slam/matching/submap_matcher.h>
+
+#include <algorithm>
+
+namespace submap_slam {
+namespace {
+
+using mrpt::math::TPose2D;
+
+/** Keeps the match regular along a corridor without holding it anywhere else. */
+PosePrior loosePrior(const TPose2D& mean) {
+  constexpr double kSigma_m = 0.5, kSigma_rad = 0.1;
+  PosePrior prior;
+  prior.mean = mean;
+  prior.information.diagonal() << 1 / (kSigma_m * kSigma_m), 1 / (kSigma_m * kSigma_m),
+      1 / (kSigma_rad * kSigma_rad);
+  return prior;
+}
+
+}  // namespace
+
+std::shared_ptr<const PackedEvidence> packedEvidenceOf(const GridSubmap& submap) {
+  if (auto kept = submap.packedEvidence()) return kept;
+  return std::make_shared<const PackedEvidence>(submap.evidence);
+}
+
+SubmapMatcher::SubmapMatcher(const GridSubmap& reference, const SubmapMatcherParams& params)
+    : params_(params),
+      evidence_(packedEvidenceOf(reference)),
+      surfels_(surfelMapOf(reference, params.map)),
+      surface_(surfaceOf(surfels_, params.surface)),
+      pyramid_(*evidence_, params.pyramid),
+      matcher_(params.matcher, params.map.search_radius) {}
+
+MatchResult SubmapMatcher::refine(const SubmapSurface& surface, const TPose2D& start) const {
+  return matcher_.match(surfels_, surface.dense, loosePrior(start));
+}
+
+std::optional<SubmapMatch> SubmapMatcher::match(const PackedEvidence& other, const SubmapSurface& surface,
+                                                const PoseWindow& window) const {
+  const auto found = searchWindow(pyramid_, surface.sparse, window, params_.min_score, params_.rivals);
+  if (!found) return std::nullopt;
+  const MatchResult refined = refine(surface, found->pose);
+
+  SubmapMatch match;
+  match.T_ref_other = refined.pose;
+  match.information = refined.information;
+  match.score = found->score;
+  match.rival_score = found->rival_score;
+  const MapAgreement there = agreementOf(surface.dense, *evidence_, match.T_ref_other, params_.agreement);
+  const MapAgreement back =
+      agreementOf(surface_.dense, other, TPose2D() - match.T_ref_other, params_.agreement);
+  match.hit_share = std::max(there.hit_share, back.hit_share);
+  match.agreement = std::min(there.agreement, back.agreement);
+  return match;
+}
+
+}  // namespace submap_slam

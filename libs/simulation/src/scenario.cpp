@@ -1,0 +1,92 @@
+#include <submap_slam/simulation/scenario.h>
+
+namespace submap_slam {
+namespace {
+
+constexpr double kPi = 3.141592653589793;
+
+/** A scanner of the kind of Hokuyo's UTM-30LX. */
+LaserModel wideLaser() {
+  LaserModel laser;
+  laser.beams = 1081;
+  laser.aperture = 1.5 * kPi;
+  laser.max_range = 30;
+  laser.sigma_range = 0.02;
+  return laser;
+}
+
+OdometryModel noiseAtEveryFourthScan() {
+  OdometryModel odometry = OdometryModel::perfect();
+  odometry.fixed_xy = 0.04;
+  odometry.fixed_turn = 0.003;
+  odometry.fixed_every = 4;
+  return odometry;
+}
+
+Scenario publishedScenario(World world, double speed, int scans, double duration_s) {
+  Scenario scenario;
+  scenario.world = std::move(world);
+  scenario.drive = {speed, 1.5, 1.0};
+  scenario.scan_rate = scans / duration_s;
+  scenario.max_scans = scans;
+  scenario.laser = wideLaser();
+  scenario.odometry = noiseAtEveryFourthScan();
+  return scenario;
+}
+
+}  // namespace
+
+Scenario makeScenario(const std::string& world) {
+  if (world == "non_convex") return publishedScenario(nonConvexWorld(), 0.94, 3640, 117);
+  if (world == "long_corridors") return publishedScenario(longCorridorsWorld(), 1.15, 2680, 83);
+  Scenario scenario;
+  scenario.world = makeWorld(world);
+  if (world == "floor") {
+    scenario.drive.max_speed = 1.0;
+    scenario.scan_rate = 10;
+    scenario.laser = wideLaser();
+  }
+  return scenario;
+}
+
+void describe(ParameterTable& table, Scenario& scenario) {
+  const Range kNotNegative{0};
+  LaserModel& laser = scenario.laser;
+  OdometryModel& odometry = scenario.odometry;
+  table.section("simulation", "How a log is simulated; the defaults belong to the world");
+  table.add("max_speed", scenario.drive.max_speed, "m/s", {0.01, 100},
+            "Speed on straight pieces of the route");
+  table.add("max_turn_rate", scenario.drive.max_turn_rate, "rad/s", {0.01, 100}, "Limit in corners");
+  table.add("corner_radius", scenario.drive.corner_radius, "m", {0.01, 100},
+            "Radius of the arcs that round corners, smaller where the legs are short");
+  table.add("scan_rate", scenario.scan_rate, "Hz", {0.01, 1000}, "Scans per second");
+  table.add("max_scans", scenario.max_scans, "", kNotNegative,
+            "The log ends after this many scans; 0: at the end of the route");
+  table.add("beams", laser.beams, "", {2, 100000}, "Beams of a scan");
+  table.add("aperture", laser.aperture, "rad", {0.01, 2 * kPi}, "Angle between the first beam and the last");
+  table.add("max_range", laser.max_range, "m", {0.1, 1000}, "Beams that hit nothing nearer are invalid");
+  table.add("sigma_range", laser.sigma_range, "m", kNotNegative, "Standard deviation of a range");
+  table.add("range_step", laser.range_step, "m", kNotNegative,
+            "Ranges are multiples of this; 0: not rounded");
+  table.add("odometry_along", odometry.along, "m/√m", kNotNegative, "Odometry noise along the motion");
+  table.add("odometry_lateral", odometry.lateral, "m/√m", kNotNegative, "Odometry noise across the motion");
+  table.add("odometry_turn_by_distance", odometry.turn_by_distance, "rad/√m", kNotNegative,
+            "Noise of the heading from driving");
+  table.add("odometry_turn_by_turn", odometry.turn_by_turn, "rad/√rad", kNotNegative,
+            "Noise of the heading from turning");
+  table.add("odometry_fixed_xy", odometry.fixed_xy, "m", kNotNegative,
+            "Noise of each axis at every odometry_fixed_every-th scan, moving or not");
+  table.add("odometry_fixed_turn", odometry.fixed_turn, "rad", kNotNegative, "The same of the heading");
+  table.add("odometry_fixed_every", odometry.fixed_every, "", {1, 1000000}, "See odometry_fixed_xy");
+  table.add("odometry_distance_scale", odometry.distance_scale, "", {0, 100}, "Measured / true distance");
+  table.add("odometry_turn_scale", odometry.turn_scale, "", {0, 100}, "Measured / true turn");
+}
+
+SimulatedLog simulate(const Scenario& scenario, uint64_t seed) {
+  Path path = drive(scenario.world.route, scenario.drive, scenario.scan_rate);
+  const auto limit = static_cast<std::size_t>(scenario.max_scans);
+  if (limit > 0 && path.poses.size() > limit) path.poses.resize(limit);
+  return simulate(scenario.world, path, scenario.laser, scenario.odometry, seed);
+}
+
+}  // namespace submap_slam

@@ -1,0 +1,40 @@
+#include "frame_graph.h"
+
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+#include <mrpt/math/wrap2pi.h>
+
+#include "relative_pose.h"
+#include "residuals.h"
+
+namespace submap_slam::pose_graph {
+
+void FrameGraph::optimise() {
+  std::vector<PoseBlock> blocks(frames.begin(), frames.end());
+  ceres::CauchyLoss cauchy(1);
+  ceres::Problem::Options ownership;
+  ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(ownership);
+  for (auto& block : blocks) problem.AddParameterBlock(block.values, 3);
+  for (const Link& link : links)
+    problem.AddResidualBlock(RelationResidual::cost(link.T_a_b, squareRootInformation(link.covariance)),
+                             link.loop ? &cauchy : nullptr, blocks[link.from].values, blocks[link.to].values);
+  problem.SetParameterBlockConstant(blocks.front().values);
+
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  options.max_num_iterations = 50;
+  options.function_tolerance = 1e-7;
+  options.num_threads = 1;  // sums in a fixed order
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  if (!summary.IsSolutionUsable()) return;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    frames[i] = blocks[i].pose();
+    frames[i].phi = mrpt::math::wrapToPi(frames[i].phi);
+  }
+}
+
+}  // namespace submap_slam::pose_graph

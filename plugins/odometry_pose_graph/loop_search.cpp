@@ -1,0 +1,268 @@
+#include "loop_search.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "frame_covariances.h"
+#include "relative_pose.h"
+
+namespace submap_slam::pose_graph {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using mrpt::math::TPose2D;
+
+/** Quantiles of χ² with 3 and 6 degrees of freedom that a true match stays below (0.999 and 0.9997). */
+constexpr double kChi2Alone = 16, kChi2Together = 25;
+
+/** Odometry's idea of T_s_end, if the log has odometry at both ends. */
+std::optional<TPose2D> odometryOfEnd(const GridSubmap& submap, const GridSubmap& next) {
+  const auto &from = submap.nodes.front().odometry, &to = next.nodes.front().odometry;
+  if (!from || !to) return std::nullopt;
+  return *to - *from;
+}
+
+Link chainLink(const GridSubmaps& submaps, std::size_t k, const ChainNoise& noise) {
+  const GridSubmap &submap = *submaps[k], &next = *submaps[k + 1];
+  Link link{k, k + 1, submap.end_pose.mean.asTPose(), submap.end_pose.cov.asEigen(), false};
+  const double path = std::max(1.0, submap.pathLength());
+  Vector3d variance(noise.sigma_xy_per_m * noise.sigma_xy_per_m * path, 0,
+                    noise.sigma_phi_per_m * noise.sigma_phi_per_m * path);
+  if (const auto odometry = odometryOfEnd(submap, next)) {
+    const TPose2D off = *odometry - link.T_a_b;
+    const double xy = std::min(noise.max_xy, noise.odometry_share * std::hypot(off.x, off.y));
+    const double phi = std::min(noise.max_phi, noise.odometry_share * std::abs(off.phi));
+    variance += Vector3d(xy * xy, 0, phi * phi);
+  }
+  variance.y() = variance.x();
+  link.covariance.diagonal() += variance;
+  return link;
+}
+
+/** Where the robot was in a submap: a circle around its path, in the local map frame. */
+struct PathCircle {
+  double x = 0, y = 0, radius = 0;  ///< m
+
+  explicit PathCircle(const GridSubmap& submap) {
+    for (const auto& node : submap.nodes) x += node.pose.x, y += node.pose.y;
+    x /= static_cast<double>(submap.nodes.size());
+    y /= static_cast<double>(submap.nodes.size());
+    for (const auto& node : submap.nodes)
+      radius = std::max(radius, std::hypot(node.pose.x - x, node.pose.y - y));
+  }
+};
+
+/** What the search keeps of an older submap. */
+struct Known {
+  std::shared_ptr<const PackedEvidence> evidence;
+  SubmapSurface surface;
+  PathCircle path;
+};
+
+/** A match that passed the gates and waits for another one to bear it out. */
+struct Pending {
+  Link link;
+  double window = 0;      ///< m
+  std::size_t entry = 0;  ///< in the list of candidates
+};
+
+class LoopSearch {
+ public:
+  LoopSearch(const GridSubmaps& submaps, const LoopSearchParams& params)
+      : submaps_(submaps), params_(params) {}
+
+  LoopSearchResult run(const std::function<bool(double)>& progress) {
+    result_.graph.frames.push_back({});
+    for (std::size_t k = 0; k < submaps_.size(); ++k) {
+      if (k > 0) extendChain(k);
+      closeLoops(k);
+      if (progress && !progress(static_cast<double>(k + 1) / static_cast<double>(submaps_.size()))) {
+        for (std::size_t rest = k + 1; rest < submaps_.size(); ++rest) extendChain(rest);
+        break;
+      }
+    }
+    return std::move(result_);
+  }
+
+ private:
+  struct Task {
+    std::size_t older;
+    PoseWindow window;  ///< of T_k_older
+    Matrix3d covariance;
+    std::optional<SubmapMatch> match;
+  };
+
+  void extendChain(std::size_t k) {
+    const Link link = chainLink(submaps_, k - 1, params_.chain);
+    result_.graph.frames.push_back(result_.graph.frames.back() + link.T_a_b);
+    result_.graph.links.push_back(link);
+  }
+
+  void closeLoops(std::size_t k);
+  std::vector<Task> tasksOf(std::size_t k, const FrameCovariances& covariances) const;
+  std::string refusal(const Task& task, const SubmapMatch& match, const Matrix3d& match_covariance) const;
+  Matrix3d covarianceOf(const SubmapMatch& match) const;
+  std::size_t list(std::size_t k, const Task& task, const Matrix3d& covariance, const std::string& refused);
+  bool acceptVerified(std::size_t k, const FrameCovariances& covariances);
+  bool agree(const Link& a, const Link& b, const FrameCovariances& covariances) const;
+  void accept(const Pending& pending, const std::string& reason);
+
+  const GridSubmaps& submaps_;
+  const LoopSearchParams& params_;
+  LoopSearchResult result_;
+  std::vector<Known> known_;
+  std::vector<Pending> pending_;
+};
+
+void LoopSearch::closeLoops(std::size_t k) {
+  const SubmapMatcher matcher(*submaps_[k], params_.matcher);
+  known_.push_back({packedEvidenceOf(*submaps_[k]), matcher.surface(), PathCircle(*submaps_[k])});
+  if (k < 2) return;
+  const FrameCovariances covariances(result_.graph);
+  std::vector<Task> tasks = tasksOf(k, covariances);
+  tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t t) {
+    const Known& older = known_[tasks[t].older];
+    tasks[t].match = matcher.match(*older.evidence, older.surface, tasks[t].window);
+  });
+  for (const Task& task : tasks) {
+    if (!task.match) continue;
+    const Matrix3d covariance = covarianceOf(*task.match);
+    const std::string refused = refusal(task, *task.match, covariance);
+    const std::size_t entry = list(k, task, covariance, refused);
+    if (!refused.empty()) continue;
+    pending_.push_back(
+        {{k, task.older, task.match->T_ref_other, covariance, true}, task.window.half_xy, entry});
+  }
+  if (acceptVerified(k, covariances)) result_.graph.optimise();
+}
+
+std::vector<LoopSearch::Task> LoopSearch::tasksOf(std::size_t k, const FrameCovariances& covariances) const {
+  std::vector<Task> tasks;
+  const auto& frames = result_.graph.frames;
+  for (std::size_t i = 0; i + 1 < k; ++i) {
+    const TPose2D T_k_i = frames[i] - frames[k];
+    const PathCircle &here = known_[k].path, &there = known_[i].path;
+    const mrpt::math::TPoint2D centre = T_k_i.composePoint({there.x, there.y});
+    const double apart =
+        std::hypot(centre.x - here.x, centre.y - here.y) - here.radius - there.radius - params_.sight;
+    if (apart > params_.max_window) continue;
+    const Matrix3d covariance = covariances.relative({k, i});
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(covariance.topLeftCorner<2, 2>());
+    const double sigma_xy = std::sqrt(std::max(0.0, eigen.eigenvalues()[1]));
+    const double sigma_phi = std::sqrt(std::max(0.0, covariance(2, 2)));
+    PoseWindow window{T_k_i, std::min(params_.max_window, params_.margin_xy + 3 * sigma_xy),
+                      std::min(params_.max_window_phi, params_.margin_phi + 3 * sigma_phi)};
+    if (sigma_xy < params_.known || apart > window.half_xy) continue;
+    tasks.push_back({i, window, covariance, std::nullopt});
+  }
+  return tasks;
+}
+
+Matrix3d LoopSearch::covarianceOf(const SubmapMatch& match) const {
+  Matrix3d information = match.information;
+  information.diagonal().array() += 1;  // along a corridor: 1 m, 1 rad
+  // The information is of the map frame's axes; the relation's are those of T_ref too: no turn.
+  Matrix3d covariance = information.inverse();
+  const double xy = params_.match_sigma_xy, phi = params_.match_sigma_phi;
+  covariance.diagonal() += Vector3d(xy * xy, xy * xy, phi * phi);
+  return covariance;
+}
+
+std::string LoopSearch::refusal(const Task& task, const SubmapMatch& match,
+                                const Matrix3d& match_covariance) const {
+  if (match.hit_share < params_.min_hit_share)
+    return fmt::format("overlap too small: {:.2f} of the surfaces", match.hit_share);
+  if (match.agreement < params_.min_agreement)
+    return fmt::format("contradicts free space: agreement {:.2f}", match.agreement);
+  if (task.window.half_xy > params_.rival_window && match.rival_score > 0)
+    return fmt::format("ambiguous: scores {:.2f} here, {:.2f} elsewhere", match.score, match.rival_score);
+  const Vector3d e = relationError({}, match.T_ref_other, task.window.centre).e;
+  const double chi2 = e.dot((task.covariance + match_covariance).inverse() * e);
+  if (chi2 > kChi2Alone) return fmt::format("too far from where the chain leads: chi2 {:.0f}", chi2);
+  return {};
+}
+
+std::size_t LoopSearch::list(std::size_t k, const Task& task, const Matrix3d& covariance,
+                             const std::string& refused) {
+  Constraint candidate;
+  candidate.from = submaps_[k]->id;
+  candidate.to = submaps_[task.older]->id;
+  candidate.T_a_b.mean = mrpt::poses::CPose2D(task.match->T_ref_other);
+  candidate.T_a_b.cov.asEigen() = covariance;
+  candidate.inter = true;
+  candidate.accepted = false;
+  candidate.reason = refused.empty() ? "no other match bears it out" : refused;
+  result_.candidates.push_back(candidate);
+  return result_.candidates.size() - 1;
+}
+
+bool LoopSearch::agree(const Link& a, const Link& b, const FrameCovariances& covariances) const {
+  const FrameCovariances::Pair pa{a.from, a.to}, pb{b.from, b.to};
+  const auto& frames = result_.graph.frames;
+  Eigen::Matrix<double, 6, 1> e;
+  e << relationError(frames[a.from], frames[a.to], a.T_a_b).e,
+      relationError(frames[b.from], frames[b.to], b.T_a_b).e;
+  Eigen::Matrix<double, 6, 6> S;
+  S.topLeftCorner<3, 3>() = covariances.relative(pa) + a.covariance;
+  S.bottomRightCorner<3, 3>() = covariances.relative(pb) + b.covariance;
+  S.topRightCorner<3, 3>() = covariances.crossed(pa, pb);
+  S.bottomLeftCorner<3, 3>() = S.topRightCorner<3, 3>().transpose();
+  return e.dot(S.ldlt().solve(e)) < kChi2Together;
+}
+
+void LoopSearch::accept(const Pending& pending, const std::string& reason) {
+  result_.graph.links.push_back(pending.link);
+  Constraint& entry = result_.candidates[pending.entry];
+  entry.accepted = true;
+  entry.reason = reason;
+}
+
+bool LoopSearch::acceptVerified(std::size_t k, const FrameCovariances& covariances) {
+  const auto isOld = [&](const Pending& p) {
+    return p.link.from + static_cast<std::size_t>(params_.witnesses_from) <= k;
+  };
+  pending_.erase(std::remove_if(pending_.begin(), pending_.end(), isOld), pending_.end());
+  std::vector<std::string> reasons(pending_.size());
+  for (std::size_t p = 0; p < pending_.size(); ++p) {
+    if (pending_[p].window <= params_.lone_window) reasons[p] = "matched where it was expected";
+    for (std::size_t q = 0; q < p; ++q) {
+      const Link &a = pending_[p].link, &b = pending_[q].link;
+      if (a.from == b.from || !agree(a, b, covariances)) continue;
+      const auto because = [](const Link& other) {
+        return fmt::format("agrees with {} to {}", other.from, other.to);
+      };
+      if (reasons[p].empty()) reasons[p] = because(b);
+      if (reasons[q].empty()) reasons[q] = because(a);
+    }
+  }
+  bool any = false;
+  std::vector<Pending> waiting;
+  for (std::size_t p = 0; p < pending_.size(); ++p) {
+    if (reasons[p].empty()) {
+      waiting.push_back(pending_[p]);
+      continue;
+    }
+    accept(pending_[p], reasons[p]);
+    any = true;
+  }
+  pending_ = std::move(waiting);
+  return any;
+}
+
+}  // namespace
+
+LoopSearchResult searchLoops(const GridSubmaps& submaps, const LoopSearchParams& params,
+                             const std::function<bool(double)>& progress) {
+  return LoopSearch(submaps, params).run(progress);
+}
+
+}  // namespace submap_slam::pose_graph

@@ -1,0 +1,92 @@
+#include "odometry_pose_graph.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "frame_covariances.h"
+
+namespace submap_slam {
+
+IMPLEMENTS_MRPT_OBJECT(OdometryPoseGraph, SubmapJoiner, submap_slam)
+
+namespace {
+
+/** The chain as the graph has it: with what odometry says against the end poses in the covariance. */
+std::vector<Constraint> chainConstraints(const pose_graph::FrameGraph& graph, const GridSubmaps& submaps) {
+  std::vector<Constraint> constraints;
+  for (const auto& link : graph.links) {
+    if (link.loop) continue;
+    Constraint constraint;
+    constraint.from = submaps[link.from]->id;
+    constraint.to = submaps[link.to]->id;
+    constraint.T_a_b.mean = mrpt::poses::CPose2D(link.T_a_b);
+    constraint.T_a_b.cov.asEigen() = link.covariance;
+    constraint.reason = "end pose of the submap";
+    constraints.push_back(constraint);
+  }
+  return constraints;
+}
+
+}  // namespace
+
+void OdometryPoseGraph::describe(ParameterTable& table) {
+  using namespace pose_graph;
+  table.section(name(), "Loop closure and pose graph with fused odometry (Huang et al. 2024)");
+  ChainNoise& chain = search_.chain;
+  table.add("chain_sigma_xy", chain.sigma_xy_per_m, "m/√m", {0, 10},
+            "How far the chain of submaps may drift beyond what the end poses say.");
+  table.add("chain_sigma_phi", chain.sigma_phi_per_m, "rad/√m", {0, 1}, "The same for the heading.");
+  table.add("chain_odometry_share", chain.odometry_share, "", {0, 10},
+            "Share of the difference between end pose and odometry that counts as uncertainty.");
+  table.add("known", search_.known, "m", {0, 100},
+            "Pairs of submaps whose relation is known better than that are not matched.");
+  table.add("max_window", search_.max_window, "m", {0, 1000},
+            "Largest half width of the window in which a submap is searched.");
+  table.add("max_window_phi", search_.max_window_phi, "rad", {0, 3.2}, "The same for the heading.");
+  table.add("sight", search_.sight, "m", {0, 1000},
+            "Distance beyond their paths at which two submaps may still share something.");
+  table.add("search_resolution", search_.matcher.pyramid.resolution, "m", {0.01, 10},
+            "Cell size of the search of the window.");
+  table.add("min_score", search_.matcher.min_score, "", {0, 1}, "Least score of the search of the window.");
+  table.add("min_hit_share", search_.min_hit_share, "", {0, 1},
+            "Least share of the surfaces of one submap that fall on surfaces of the other.");
+  table.add("min_agreement", search_.min_agreement, "", {0, 1},
+            "Least share of the surfaces that fall on surfaces, not into free space, of the other submap.");
+  table.add("tolerance", search_.matcher.agreement.tolerance, "m", {0, 1},
+            "A surface this near to an occupied cell of the other submap falls on it.");
+  table.add("lone_window", search_.lone_window, "m", {0, 1000},
+            "In wider windows a match needs another one that agrees with it.");
+  table.add("match_sigma_xy", search_.match_sigma_xy, "m", {1e-4, 10},
+            "Uncertainty of a match beside what its information says.");
+  table.add("match_sigma_phi", search_.match_sigma_phi, "rad", {1e-5, 1}, "The same for the heading.");
+}
+
+JoinedMap OdometryPoseGraph::join(const GridSubmaps& submaps, const JoinedMap& initial,
+                                  const ProgressCallback& progress) const {
+  using namespace pose_graph;
+  JoinedMap joined;
+  joined.frames = initial.frames;
+  if (submaps.size() < 2) {
+    joined.constraints = initial.constraints;
+    joined.status = JoinStatus::kNothingToJoin;
+    joined.reason = "there is only one submap";
+    return joined;
+  }
+  const auto report = [&](double share) { return !progress || progress(share, "closing loops"); };
+  const LoopSearchResult found = searchLoops(submaps, search_, report);
+  joined.constraints = chainConstraints(found.graph, submaps);
+  joined.constraints.insert(joined.constraints.end(), found.candidates.begin(), found.candidates.end());
+  const FrameCovariances covariances(found.graph);
+  for (std::size_t i = 0; i < joined.frames.size(); ++i) {
+    joined.frames[i].mean = mrpt::poses::CPose2D(found.graph.frames[i]);
+    joined.frames[i].cov.asEigen() = covariances.block(i, i);
+  }
+  const auto accepted = std::count_if(found.candidates.begin(), found.candidates.end(),
+                                      [](const Constraint& c) { return c.accepted; });
+  joined.status = JoinStatus::kConverged;
+  joined.reason = fmt::format("{} of {} loop candidates accepted", accepted, found.candidates.size());
+  return joined;
+}
+
+}  // namespace submap_slam

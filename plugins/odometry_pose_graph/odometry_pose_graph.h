@@ -1,0 +1,33 @@
+#pragma once
+
+#include <submap_slam/core/submap_joiner.h>
+
+#include "loop_search.h"
+
+namespace submap_slam {
+
+/** Closes loops and fuses odometry.
+ *
+ * Searches for submaps that show the same place, and makes the graph of submap frames and nodes, odometry
+ * included, consistent (Huang et al., "A Construction Optimization for Laser SLAM Based on Odometer
+ * Constraint Fusion", ITC 53(2), 2024). The frames may be any distance from the truth that their chain allows
+ * for.
+ */
+class OdometryPoseGraph : public SubmapJoiner {
+  DEFINE_MRPT_OBJECT(OdometryPoseGraph, submap_slam)
+
+ public:
+  std::string name() const override { return "odometry_pose_graph"; }
+  std::string description() const override {
+    return "loop closure and pose graph with fused odometry (Huang et al. 2024)";
+  }
+  void describe(ParameterTable& table) override;
+
+  JoinedMap join(const GridSubmaps& submaps, const JoinedMap& initial,
+                 const ProgressCallback& progress) const override;
+
+ private:
+  pose_graph::LoopSearchParams search_;
+};
+
+}  // namespace submap_slam

@@ -1,0 +1,4 @@
+#include "odometry_pose_graph.h"
+
+SUBMAP_SLAM_PLUGIN()
+SUBMAP_SLAM_REGISTER_JOINER(registerOdometryPoseGraph, submap_slam::OdometryPoseGraph)

@@ -1,0 +1,193 @@
+/** `experiment` fills its table whatever happens to single cells, and does nothing twice. */
+#include <csignal>
+#include <sstream>
+#include <thread>
+
+#include "cli_fixture.h"
+
+namespace submap_slam::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+namespace fs = std::filesystem;
+
+class ExperimentTest : public CliTest {
+ protected:
+  static constexpr const char* kData =
+      "[data hall]\nworld = non_convex\nsimulation.beams = 90\nsimulation.max_scans = 60\n";
+  static constexpr const char* kChain = "[setting chain]\njoining.chain =\n";
+  static constexpr const char* kOdometry = "[setting odometry]\nbaseline = odometry\n";
+
+  /** An experiment with the data and settings above, and what is appended. */
+  std::string experiment(const std::string& settings, const std::string& appended = "") const {
+    writeFile(path("e.ini"), "[experiment]\ntitle = A test\ndata = hall\nsettings = " + settings +
+                                 "\nseeds = 1, 2\ncolumns = mae_m, auc, submaps\n" + kData + kChain +
+                                 kOdometry + appended);
+    return path("e.ini");
+  }
+
+  fs::path result(const std::string& setting, const std::string& seed) const {
+    return folder_ / "out" / "cells" / "hall" / setting / seed / "result.json";
+  }
+
+  std::string table() const { return contentOf(path("out/table.md")); }
+};
+
+TEST_F(ExperimentTest, HelpHasAnExample) {
+  EXPECT_THAT(succeed({"experiment", "--help"}).out, HasSubstr("Example: submap-slam experiment "));
+}
+
+TEST_F(ExperimentTest, FillsTheTableAndRecordsHow) {
+  succeed({"experiment", experiment("chain, odometry"), "-o", path("out"), "--jobs", "2"});
+  EXPECT_THAT(table(), HasSubstr("# A test\n\n| data | setting | runs | MAE, m | AUC | submaps |\n"));
+  EXPECT_THAT(table(), HasSubstr("\n| hall | chain | 2 | 0."));
+  EXPECT_THAT(table(), HasSubstr("\n| hall | odometry | 2 | 0."));
+  EXPECT_THAT(table(), HasSubstr("seeds 1, 2; submap-slam 0."));
+  const std::string csv = contentOf(path("out/table.csv"));
+  EXPECT_THAT(csv, HasSubstr("data,setting,runs,mae_m_mean,mae_m_std,auc_mean"));
+  EXPECT_EQ(lines(csv), 3u);
+  EXPECT_EQ(contentOf(path("out/experiment.ini")), contentOf(path("e.ini")));
+  for (const char* setting : {"chain", "odometry"})
+    EXPECT_THAT(contentOf(result(setting, "2").parent_path() / "config.ini"), HasSubstr("seed = 2\n"));
+}
+
+TEST_F(ExperimentTest, TruthScoresPerfectly) {
+  const std::string file = experiment("truth", "[setting truth]\nbaseline = truth\n");
+  succeed({"experiment", file, "-o", path("out"), "--set", "experiment.columns=mae_m, auc, accuracy"});
+  EXPECT_THAT(table(), HasSubstr("| 0.0000 ± 0.0000 | 1.0000 ± 0.0000 | 1.0000 ± 0.0000 |"));
+}
+
+TEST_F(ExperimentTest, KeepsCompleteCells) {
+  const Arguments arguments{"experiment", experiment("chain"), "-o", path("out")};
+  succeed(arguments);
+  const std::string before = table();
+  const auto first = fs::last_write_time(result("chain", "1"));
+  fs::remove(result("chain", "2"));
+  EXPECT_THAT(succeed({"experiment", path("e.ini"), "-o", path("out"), "--list"}).out,
+              HasSubstr("hall, chain, seed 1: complete\nhall, chain, seed 2: to do\n"));
+  EXPECT_THAT(succeed(arguments).err, HasSubstr("[1/1] hall, chain, seed 2: done"));
+  EXPECT_EQ(fs::last_write_time(result("chain", "1")), first);
+  EXPECT_EQ(table(), before);
+}
+
+TEST_F(ExperimentTest, RunsCellsAnewWhoseSettingsChanged) {
+  const std::string setting = "[setting other]\njoining.chain =\nsubmaps.max_distance = ";
+  succeed({"experiment", experiment("chain, other", setting + "3\n"), "-o", path("out"), "-q"});
+  const Outcome changed =
+      succeed({"experiment", experiment("chain, other", setting + "2\n"), "-o", path("out")});
+  EXPECT_THAT(changed.err, HasSubstr("[2/2] hall, other, seed 2: done"));
+  EXPECT_THAT(changed.err, Not(HasSubstr("hall, chain")));
+}
+
+TEST_F(ExperimentTest, GoesOnAfterAKill) {
+  const Arguments arguments{"experiment", experiment("chain, odometry"), "-o", path("out")};
+  Process process = start(arguments);
+  while (process.running() && !fs::exists(result("chain", "1"))) std::this_thread::yield();
+  process.signal(SIGKILL);
+  ASSERT_EQ(process.wait().exit_code, -SIGKILL);
+  const auto first = fs::last_write_time(result("chain", "1"));
+  succeed(arguments);
+  EXPECT_EQ(fs::last_write_time(result("chain", "1")), first);
+  for (const char* setting : {"chain", "odometry"})
+    for (const char* seed : {"1", "2"}) EXPECT_TRUE(fs::exists(result(setting, seed)));
+  EXPECT_THAT(table(), Not(HasSubstr("not run")));
+}
+
+TEST_F(ExperimentTest, StopsOnASignalAndGoesOn) {
+  const Arguments arguments{"experiment", experiment("chain, odometry"), "-o", path("out")};
+  Process process = start(arguments);
+  while (process.running() && !fs::exists(result("chain", "1"))) std::this_thread::yield();
+  process.signal(SIGTERM);
+  EXPECT_EQ(process.wait().exit_code, 130);
+  EXPECT_THAT(table(), HasSubstr("not run"));
+  succeed(arguments);
+  EXPECT_THAT(table(), Not(HasSubstr("not run")));
+}
+
+TEST_F(ExperimentTest, FailedCellsShowTheirErrorAndTheRestCompletes) {
+  const std::string file = experiment("chain, deaf", "[setting deaf]\nreader.sensor_labels = SONAR\n");
+  const Outcome outcome = run({"experiment", file, "-o", path("out"), "-q"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_EQ(lines(outcome.err), 1u) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("2 cells failed"));
+  EXPECT_THAT(table(), HasSubstr("\n| hall | chain | 2 | 0."));
+  EXPECT_THAT(table(), HasSubstr("\n| hall | deaf | 0 | – | – | – | failed: seed 1: "));
+  EXPECT_THAT(table(), HasSubstr("SONAR"));
+  EXPECT_THAT(contentOf(path("out/table.csv")), HasSubstr("hall,deaf,0,,,,,,,\"seed 1: "));
+}
+
+TEST_F(ExperimentTest, JudgesRecordingsByTruthAndRelations) {
+  std::ostringstream relations;
+  const double start = 1577836800;  // of the simulated logs
+  relations << std::fixed << start << ' ' << start + 1 << " 0.8 0 0 0 0 0\n";
+  writeFile(path("corridor.relations"), relations.str());
+  writeFile(path("e.ini"),
+            "[experiment]\ndata = corridor\nsettings = chain\ncolumns = mae_m, relations_m, scans\n"
+            "[data corridor]\nlog = corridor.rawlog\ntruth = corridor.tum\nrelations = corridor.relations\n"
+            "[setting chain]\njoining.chain =\n");
+  fs::copy_file(log("corridor_sf.rawlog"), path("corridor.rawlog"));
+  fs::copy_file(log("corridor_sf.truth.tum"), path("corridor.tum"));
+  succeed({"experiment", path("e.ini"), "-o", path("out")});
+  EXPECT_THAT(table(), HasSubstr("\n| corridor | chain | 1 | 0."));
+  EXPECT_THAT(table(), HasSubstr("| 401 |"));
+  EXPECT_THAT(table(), Not(HasSubstr("–")));
+}
+
+TEST_F(ExperimentTest, RefusesBadDescriptions) {
+  const auto refuses = [&](const std::string& ini, const std::string& text) {
+    writeFile(path("bad.ini"), ini);
+    expectRefused(run({"experiment", path("bad.ini"), "-o", path("out")}), text);
+  };
+  const std::string head = "[experiment]\ndata = hall\nsettings = chain\ncolumns = auc\n";
+  expectRefused(run({"experiment", path("missing.ini")}), "missing.ini: no such ini file");
+  refuses("", "[experiment] data: is empty");
+  refuses("[experiment]\ndatta = hall\n", "did you mean [experiment] data?");
+  refuses("[experimant]\n", "unknown section [experimant]");
+  refuses(head + kData, "no section [setting chain]");
+  refuses(head + kChain, "no section [data hall]");
+  refuses(head + kData + "[setting chain]\nsubmaps.max_distence = 3\n",
+          "did you mean [submaps] max_distance?");
+  refuses(head + kData + "[setting chain]\njoining.chain = magic\n", "magic");
+  refuses(head + kData + "[setting chain]\nbaseline = magic\n", "expected odometry or truth");
+  refuses(head + kChain + "[data hall]\nworld = moon\n", "expected one of room");
+  refuses(head + kChain + "[data hall]\nwerld = room\n", "unknown key [data hall] werld");
+  refuses(head + kChain + "[data hall]\nworld = room\nsimulation.beam = 3\n",
+          "did you mean [simulation] beams?");
+  refuses(head + kChain + "[data hall]\ntruth = missing.tum\n", "missing.tum: no such file");
+  refuses(head + kChain + "[data hall]\n", "needs either a world or a log");
+  refuses(head + "seeds = one\n" + kData + kChain, "'one' is not a whole number");
+  refuses("[experiment]\ndata = hall\nsettings = chain\ncolumns = beauty\n" + std::string(kData) + kChain,
+          "unknown column 'beauty'");
+  EXPECT_FALSE(fs::exists(path("out")));
+}
+
+TEST_F(ExperimentTest, RecordsOverridesAndRunsFromTheRecord) {
+  const std::string setting = "experiment.seeds=7";
+  succeed({"experiment", experiment("odometry"), "-o", path("out"), "--set", setting});
+  EXPECT_TRUE(fs::exists(result("odometry", "7")));
+  EXPECT_THAT(contentOf(path("out/experiment.ini")),
+              ::testing::EndsWith("\n# run with --set " + setting + "\n"));
+  EXPECT_THAT(succeed({"experiment", path("out/experiment.ini"), "-o", path("out")}).err, HasSubstr("[2/2]"));
+}
+
+TEST_F(ExperimentTest, NeverWritesIntoAFolderOfSomethingElse) {
+  fs::create_directory(path("out"));
+  writeFile(path("out/mine.txt"), "mine");
+  expectRefused(run({"experiment", experiment("chain"), "-o", path("out")}), "out");
+  EXPECT_EQ(contentsOf(path("out")).size(), 1u);
+}
+
+TEST_F(ExperimentTest, BundledExperimentsAreValid) {
+  std::size_t files = 0;
+  for (const auto& entry :
+       fs::recursive_directory_iterator(SUBMAP_SLAM_SOURCE_DIR "/ini/experiments/grid_joining")) {
+    ++files;
+    EXPECT_THAT(succeed({"experiment", entry.path().string(), "-o", path("out"), "--list"}).out,
+                HasSubstr("to do"));
+  }
+  EXPECT_GE(files, 4u);
+}
+
+}  // namespace
+}  // namespace submap_slam::testing
