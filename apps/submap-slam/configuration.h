@@ -19,8 +19,9 @@ using JoinerChain = std::vector<std::shared_ptr<SubmapJoiner>>;
 
 /** Section [joining]. */
 struct JoiningParams {
-  std::string chain = "odometry_pose_graph, grid_gauss_newton";  ///< names of joiners, in the order in which they run
-  double map_resolution = 0;                ///< m per cell of the global map; 0: that of the submaps
+  std::string chain =
+      "odometry_pose_graph, grid_gauss_newton";  ///< names of joiners, in the order in which they run
+  double map_resolution = 0;                     ///< m per cell of the global map; 0: that of the submaps
 };
 
 /** Every parameter of a run, with one table that loads, checks, writes and documents them all. */

@@ -163,8 +163,7 @@ void SubmapBuild::advance(DriftCovariance& drift, const std::vector<PathNode>& p
 mrpt::math::CMatrixDouble33 SubmapBuild::endCovariance(const Span& span, const Filtered& filtered) const {
   const auto& path = filtered.particle.path;
   DriftCovariance drift(params_.drift);
-  for (std::size_t i = span.first + 1; i <= lastFrame(span); ++i)
-    advance(drift, path, i - span.warm_up);
+  for (std::size_t i = span.first + 1; i <= lastFrame(span); ++i) advance(drift, path, i - span.warm_up);
   // The path is in the filter's frame, which the warm-up began; turn the axes into the submap's.
   const double heading = path[span.first - span.warm_up].pose.phi;
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();

@@ -102,7 +102,8 @@ void describe(ParameterTable& table, GridMapperParams& p) {
   describe(table, p.filter.map);
   describe(table, p.filter.matcher);
   table.section("rescue", "Correlative search for scans that the matcher cannot explain");
-  table.add("below", p.filter.rescue_below, "", kShare, "Search if fewer beams are inliers than this share of what is usual over the last scans");
+  table.add("below", p.filter.rescue_below, "", kShare,
+            "Search if fewer beams are inliers than this share of what is usual over the last scans");
   table.add("slip_beyond", p.filter.slip_beyond, "", kPositive,
             "A match this many sigmas from odometry's prediction makes odometry doubtful");
   table.add("slip_cost", p.filter.slip_cost, "", kNonNegative,

@@ -36,8 +36,8 @@ bool covers(const CorrelativeSearchParams& search, const TPose2D& a, const TPose
          std::abs(mrpt::math::wrapToPi(a.phi - b.phi)) < 0.5 * search.window_phi;
 }
 
-/** Mean share of inlier beams over the last scans: how well scans can be expected to fit here. In the open, where
- * most beams end where nothing was seen before, it is low without anything being wrong. */
+/** Mean share of inlier beams over the last scans: how well scans can be expected to fit here. In the open,
+ * where most beams end where nothing was seen before, it is low without anything being wrong. */
 double usualInlierShare(const Particle& particle) {
   constexpr std::size_t kScans = 10;
   const std::size_t n = std::min(kScans, particle.path.size());
@@ -106,8 +106,8 @@ std::vector<ParticleFilter::Proposal> ParticleFilter::propose(const Particle& pa
   if (particle.map.empty() || scan.points.empty())
     return {unseen(prior.mean, particle.path.back().inlier_share)};
   const MatchResult match = matcher_.match(particle.map, scan, prior);
-  const bool fits =
-      match.inlier_share >= params_.rescue_below * usualInlierShare(particle) && mahalanobis(match.pose, prior) <= params_.slip_beyond;
+  const bool fits = match.inlier_share >= params_.rescue_below * usualInlierShare(particle) &&
+                    mahalanobis(match.pose, prior) <= params_.slip_beyond;
   std::vector<Proposal> out;
   if (fits && !isSurprising(particle, prior))
     out.push_back(proposal(match, prior, 0, true));

@@ -31,7 +31,8 @@ struct EvidenceGrid {
   /** Number of cells with hits > 0. */
   std::size_t observedCells() const;
 
-  /** The smallest grid with the same lattice that holds every observed cell; one unknown cell if there is none. */
+  /** The smallest grid with the same lattice that holds every observed cell; one unknown cell if there is
+   * none. */
   EvidenceGrid cropped() const;
 
   /** MRPT's grid: the evidence sum clamped to MRPT's int8 range; unknown

@@ -18,9 +18,9 @@ namespace submap_slam {
 void writeG2o(const std::string& file, const std::vector<mrpt::poses::CPosePDFGaussian>& frames,
               const std::vector<Constraint>& constraints);
 
-/** Writes every constraint, accepted or not, with its reason, as a table (CSV). T_a_b and its standard deviations
- * are in the axes of frame `from`; kind is "intra" for the chain of consecutive submaps, "inter" for loop
- * closures. Throws OutputError if the file cannot be written. */
+/** Writes every constraint, accepted or not, with its reason, as a table (CSV). T_a_b and its standard
+ * deviations are in the axes of frame `from`; kind is "intra" for the chain of consecutive submaps, "inter"
+ * for loop closures. Throws OutputError if the file cannot be written. */
 void writeConstraints(const std::string& file, const std::vector<Constraint>& constraints);
 
 }  // namespace submap_slam
