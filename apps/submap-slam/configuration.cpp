@@ -39,7 +39,8 @@ void describeJoiningParameters(ParameterTable& table, Configuration& config) {
             "of end poses");
   table.add(
       "map_resolution", config.joining.map_resolution, "m", {0, 10},
-      "Cell size of the global map where a joiner leaves its making to the program; 0: that of the submaps");
+      "Cell size of the global map where a joiner leaves its making to the program; 0: that of the submaps, "
+      "doubled until the map has at most 20 million cells");
   table.section("plugins", "Shared libraries with joiners");
   table.add("load", config.plugins, "Plugin files to load besides the installed ones, separated by commas");
   for (const auto& joiner : config.joiners) joiner->describe(table);

@@ -62,6 +62,9 @@ void GridGaussNewton::describe(ParameterTable& table) {
   table.add("finest_level", finest_level_, "", {0, 6},
             "Level that counts as the finest; each halves the resolution and saves three quarters of memory "
             "and time.");
+  table.add("max_cells", max_cells_, "", {1e4, 1e12},
+            "Submaps with more cells in all start at a coarser finest level, which keeps memory and time in "
+            "bounds.");
   table.add("solver", solver_,
             "How a step is found: summed cell by cell, by explicit sparse matrices (eq. 13), or with the map "
             "as unknown "
@@ -112,6 +115,17 @@ CoarseToFineOptions GridGaussNewton::options() const {
   return o;
 }
 
+int GridGaussNewton::finestLevel(const GridSubmaps& submaps) const {
+  double cells = 0;
+  for (const auto& submap : submaps) {
+    const auto packed = submap->packedEvidence();
+    cells += static_cast<double>(packed ? packed->storedCells() : submap->evidence.observedCells());
+  }
+  int level = finest_level_;
+  for (cells /= std::pow(4, level); cells > max_cells_; cells /= 4) ++level;
+  return level;
+}
+
 JoinedMap GridGaussNewton::join(const GridSubmaps& submaps, const JoinedMap& initial,
                                 const ProgressCallback& progress) const {
   requireEqualResolutions(submaps);
@@ -132,7 +146,7 @@ JoinedMap GridGaussNewton::join(const GridSubmaps& submaps, const JoinedMap& ini
   };
   const bool as_published = jacobian_ == "paper" || coarse_jacobian_ == "paper";
   const double background = as_published ? 0 : backgroundOf(submaps);
-  const auto pyramid = buildPyramid(submaps, {finest_level_, levels_, background});
+  const auto pyramid = buildPyramid(submaps, {finestLevel(submaps), levels_, background});
   const CoarseToFineResult result =
       joinCoarseToFine(pyramid, meansOf(initial.frames),
                        ConstraintPrior(initial.constraints, submaps, prior_weight_), options(), report);

@@ -30,9 +30,13 @@ class GridGaussNewton : public SubmapJoiner {
  private:
   grid_joining::CoarseToFineOptions options() const;
 
+  /** finest_level, or the next coarser one where the evidence has at most max_cells cells. */
+  int finestLevel(const GridSubmaps& submaps) const;
+
   std::string solver_ = "pose_only", jacobian_ = "variable_projection", coarse_jacobian_ = "surface";
   int levels_ = 5, finest_level_ = 0, max_iterations_ = 40;
   double step_tolerance_ = 2e-4, turn_tolerance_ = 1e-5, cost_tolerance_ = 2e-4;
+  double max_cells_ = 1e7;
   double prior_weight_ = 1, correlation_length_ = 1, lattice_angle_ = 0.41;
 };
 

@@ -48,7 +48,8 @@ struct Loops {
     alignas(64) std::array<int32_t, kTilePoints> block, bit;
     for (std::size_t a = 0; a < kTile; ++a) first_row[a] = static_cast<Scalar>(a);
     for (std::size_t k = 0; k < kTilePoints; k += kWidth) {
-      const Vector b = Vector{} + static_cast<Scalar>(k / kTile);
+      const std::size_t row = k / kTile;
+      const Vector b = Vector{} + static_cast<Scalar>(row);
       const Located point(view, reinterpret_cast<const Vector&>(first_row[k % kTile]), b);
       reinterpret_cast<Integers&>(block[k]) = point.block;
       reinterpret_cast<Integers&>(bit[k]) = (point.row & kBlockMask) * kBlock + (point.column & kBlockMask);
@@ -255,6 +256,7 @@ struct Loops {
   }
 };
 
+// An attribute can't be put in parentheses. NOLINTBEGIN(bugprone-macro-parentheses)
 /** The loops compiled for one instruction set: `target` is what the compiler may use. */
 #define SUBMAP_SLAM_LANE_KERNEL(name, bytes, target)                                                        \
   template <class Scalar>                                                                                   \
@@ -284,6 +286,7 @@ struct Loops {
     }                                                                                                       \
     static constexpr LaneKernel<Scalar> kernel{mark, sample, fuse, divide, linearise, link};                \
   }
+// NOLINTEND(bugprone-macro-parentheses)
 
 SUBMAP_SLAM_LANE_KERNEL(Baseline, 16, );
 #ifdef __x86_64__

@@ -215,6 +215,14 @@ TEST(FuseEvidence, AFrameAlmostParallelToTheAxesIsLikeAParallelOne) {
   }
 }
 
+TEST(FuseEvidence, AHugeMapIsMadeCoarserUnlessAskedFor) {
+  GridSubmaps submaps{emptySubmap(), emptySubmap()};
+  for (const auto& submap : submaps) set(*submap, 0.05, 0.05, 1, 1);
+  const EvidenceGrid map = fuseEvidence(submaps, {gaussian({}), gaussian({600, 500, 0})}, 0);
+  EXPECT_DOUBLE_EQ(map.resolution(), 0.2);
+  EXPECT_EQ(fuseEvidence(submaps, {gaussian({}), gaussian({60, 50, 0})}, 0).resolution(), 0.1);
+}
+
 TEST(FuseEvidence, NothingObservedGivesNoObservedCell) {
   EXPECT_EQ(fuseEvidence({emptySubmap()}, {gaussian({0, 0, 0})}, 0.1).observedCells(), 0u);
   EXPECT_EQ(fuseEvidence({}, {}, 0.1).observedCells(), 0u);

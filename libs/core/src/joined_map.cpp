@@ -103,6 +103,9 @@ class PlacedEvidence {
   double cos_, sin_;
 };
 
+/** Largest map that is made without being asked for: 160 MB, and as much again while it is written. */
+constexpr double kMostCells = 2e7;
+
 /** Fewer hits than this come from rounding where a look-up falls on the centre of a neighbouring cell. */
 constexpr double kLeastHits = 1e-6;
 
@@ -187,6 +190,7 @@ EvidenceGrid fuseEvidence(const GridSubmaps& submaps, const std::vector<CPosePDF
   }
   if (placed.empty()) return {};
 
+  while (resolution <= 0 && (x_max - x_min) * (y_max - y_min) > kMostCells * finest * finest) finest *= 2;
   EvidenceGrid map(x_min, x_max, y_min, y_max, resolution > 0 ? resolution : finest);
   tbb::parallel_for(0, static_cast<int>(map.sizeY()), [&](int row) { fuseRow(placed, row, map); });
   return map.cropped();

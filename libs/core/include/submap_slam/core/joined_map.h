@@ -69,7 +69,8 @@ Trajectory trajectoryOf(const GridSubmaps& submaps, const std::vector<mrpt::pose
 /** Global map for given frames in closed form: M̂_j = Σ_i ω_ij L_i(p_ij) / Σ_i ω_ij², ω_ij = N_i(p_ij) /
  * N_M(m_j), N_M = Σ_i N_i (Wang, Zhao, Huang, "Grid-based Submap Joining", eq. 15), L_i and N_i bilinear.
  * Cells that no submap observed stay unknown.
- * @param resolution metres per cell of the result; ≤ 0: that of the finest submap */
+ * @param resolution metres per cell of the result; ≤ 0: that of the finest submap, doubled until the
+ * map has at most 20 million cells */
 EvidenceGrid fuseEvidence(const GridSubmaps& submaps,
                           const std::vector<mrpt::poses::CPosePDFGaussian>& frames, double resolution);
 

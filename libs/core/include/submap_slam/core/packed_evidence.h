@@ -19,6 +19,9 @@ class PackedEvidence {
   EvidenceGrid unpacked() const;
 
   bool empty() const { return cells_.empty(); }
+
+  /** Cells in the blocks that are stored. */
+  std::size_t storedCells() const { return cells_.size() * kSide * kSide; }
   double resolution() const { return resolution_; }    ///< m per cell
   double xMin() const { return x_min_; }               ///< left edge of cell (0, ·) (m)
   double yMin() const { return y_min_; }               ///< lower edge of cell (·, 0) (m)
