@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <submap_slam/mapping/surfel_map.h>
+#include <submap_slam/simulation/normal_generator.h>
 
 #include <cmath>
 
@@ -48,6 +49,28 @@ TEST(SurfelMap, AWallIsALineAtSubCellPosition) {
       EXPECT_NEAR(distanceToLine(*surfel, x, 1.013), 0, 1e-4);
       EXPECT_NEAR(surfel->x, x, 0.06);
     }
+}
+
+TEST(SurfelMap, ANoisyWallIsNotShiftedByTheCellsItFallsInto) {
+  // Noise takes some endpoints across the border of the cells at y = 1.
+  NormalGenerator normal(1, 0);
+  constexpr double kSigma = 0.02;
+  for (const double wall : {1.005, 1.01, 1.02, 1.03, 1.045}) {
+    SurfelMap map{SurfelMapParams{}};
+    for (int scan = 0; scan < 200; ++scan) {
+      LaserPoints points = wallPoints(-1, 0, 1, 0);
+      for (auto& p : points.points) p.y = static_cast<float>(wall + kSigma * normal());
+      map.insert(points, {});
+    }
+    double shift = 0;
+    int count = 0;
+    for (double x = -0.8; x < 0.8; x += 0.05, ++count) {
+      const Surfel* surfel = map.nearest(x, wall);
+      ASSERT_NE(surfel, nullptr);
+      shift += static_cast<double>(surfel->line_y) - wall;
+    }
+    EXPECT_NEAR(shift / count, 0, 2e-3) << wall;
+  }
 }
 
 TEST(SurfelMap, SlantingWallsKeepTheirDirection) {

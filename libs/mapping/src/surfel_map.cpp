@@ -6,8 +6,6 @@
 namespace submap_slam {
 namespace {
 
-/** A cell hit more often than this counts no more in the line fit of its neighbours. */
-constexpr float kMaxFitWeight = 8.0f;
 /** A fitted patch is a line if its thickness is below this share of its length (both as standard deviations).
  */
 constexpr double kMaxThickness = 0.4;
@@ -154,7 +152,9 @@ void SurfelMap::fitLine(uint32_t index) {
     const Surfel& other = surfels_[link];
     const double dx = static_cast<double>(other.x - surfel.x), dy = static_cast<double>(other.y - surfel.y);
     if (dx * dx + dy * dy > params_.fit_radius * params_.fit_radius) continue;
-    m.add(static_cast<double>(std::min(other.hits, kMaxFitWeight)), dx, dy);
+    // Each endpoint counts the same: the noise of one wall spreads over two rows of cells, and weights that
+    // favour the row with fewer endpoints would shift the line away from the wall.
+    m.add(static_cast<double>(other.hits), dx, dy);
     ++neighbours;
   }
   const double mx = m.x / m.w, my = m.y / m.w;

@@ -7,7 +7,7 @@ namespace submap_slam {
 
 /** How far poses in a submap can be trusted. */
 struct DriftParams {
-  double match_scale = 0.07;
+  double match_scale = 0.06;
   double odometry_scale = 0.6;
   double sigma_xy_per_m = 0.001;    ///< m per √m
   double sigma_phi_per_m = 0.0001;  ///< rad per √m
