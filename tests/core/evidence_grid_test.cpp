@@ -127,5 +127,14 @@ TEST(EvidenceGrid, RefusesImplausibleSizes) {
   EXPECT_ANY_THROW(readHeader(0, 0, 0.1, 2, 2)) << "cells are missing";
 }
 
+TEST(EvidenceGrid, KnowsWhetherItIsCropped) {
+  EvidenceGrid grid(0, 1, 0, 1, 0.1);
+  EXPECT_FALSE(grid.isCropped());
+  *grid.hits.cellByIndex(2, 3) = 1;
+  *grid.hits.cellByIndex(7, 4) = 1;
+  EXPECT_FALSE(grid.isCropped());
+  EXPECT_TRUE(grid.cropped().isCropped());
+}
+
 }  // namespace
 }  // namespace submap_slam

@@ -83,6 +83,12 @@ EvidenceGrid EvidenceGrid::cropped() const {
   return out;
 }
 
+bool EvidenceGrid::isCropped() const {
+  CellBox box{};
+  return observedBox(hits, box) && box.x0 == 0 && box.y0 == 0 && box.x1 + 1 == sizeX() &&
+         box.y1 + 1 == sizeY();
+}
+
 double EvidenceGrid::occupancy(std::size_t cx, std::size_t cy) const {
   const float l = *log_odds.cellByIndex(static_cast<unsigned>(cx), static_cast<unsigned>(cy));
   return 1.0 / (1.0 + std::exp(-static_cast<double>(l)));

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "binary_file.h"
@@ -187,7 +188,9 @@ void writeMapImage(const std::string& file, const EvidenceGrid& map, const Traje
                    const std::vector<mrpt::poses::CPosePDFGaussian>& frames, int max_side) {
   constexpr int kMinSide = 200;
   if (max_side < kMinSide) throw std::invalid_argument("writeMapImage: max_side must be at least 200 pixels");
-  const EvidenceGrid observed = map.cropped();
+  std::optional<EvidenceGrid> smaller;  // a second copy of a large map is made only where it is needed
+  if (!map.isCropped()) smaller = map.cropped();
+  const EvidenceGrid& observed = smaller ? *smaller : map;
   const Layout layout(observed, max_side);
   CImage image(static_cast<unsigned>(layout.imageWidth()), static_cast<unsigned>(layout.imageHeight()),
                mrpt::img::CH_RGB);

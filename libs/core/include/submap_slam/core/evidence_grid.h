@@ -35,6 +35,9 @@ struct EvidenceGrid {
    * none. */
   EvidenceGrid cropped() const;
 
+  /** True if cropped() would change nothing. */
+  bool isCropped() const;
+
   /** MRPT's grid: the evidence sum clamped to MRPT's int8 range; unknown
    * cells are 0.5. Its probabilities are those of *free* space, as in MRPT. */
   mrpt::maps::COccupancyGridMap2D toOccupancyGrid() const;
