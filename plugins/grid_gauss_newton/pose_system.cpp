@@ -28,7 +28,7 @@ std::vector<int> freeRows(const std::vector<bool>& held, int& size) {
 Eigen::SparseMatrix<double> lowerTriangle(const PoseSystem& system, const std::vector<int>& rows, int size,
                                           const Eigen::VectorXd& added) {
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(9 * system.blocks.size() + added.size());
+  entries.reserve(9 * system.blocks.size() + static_cast<std::size_t>(added.size()));
   for (const auto& [pair, block] : system.blocks) {
     const int a = rows[pair.first], b = rows[pair.second];
     if (a < 0 || b < 0) continue;

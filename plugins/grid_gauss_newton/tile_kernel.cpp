@@ -61,8 +61,9 @@ template <class Scalar>
 void TileKernel<Scalar>::listPoints() {
   std::size_t n = 0;
   for (std::size_t k = 0; k < kTilePoints; ++k) {
-    points_.a[n] = static_cast<Scalar>(k % kTile);
-    points_.b[n] = static_cast<Scalar>(k / kTile);
+    const std::size_t column = k % kTile, row = k / kTile;
+    points_.a[n] = static_cast<Scalar>(column);
+    points_.b[n] = static_cast<Scalar>(row);
     n += marked_[k];
   }
   points_.count = n;
