@@ -50,6 +50,8 @@ function(submap_slam_plugin name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_library(${name} MODULE ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE submap_core ${ARG_DEPENDS} submap_slam_options)
+  # MRPT's class registry points into a plugin to the end; unloading one before would leave it dangling.
+  target_link_options(${name} PRIVATE LINKER:-z,nodelete)
   set_target_properties(${name} PROPERTIES
     LIBRARY_OUTPUT_DIRECTORY ${SUBMAP_SLAM_PLUGIN_OUTPUT_DIRECTORY} PREFIX "" INSTALL_RPATH "$ORIGIN/../..")
   install(TARGETS ${name} LIBRARY DESTINATION ${SUBMAP_SLAM_PLUGIN_INSTALL_DIR})
