@@ -26,14 +26,22 @@ constexpr double kChi2Alone = 16, kChi2Together = 25;
 
 /** Odometry's idea of T_s_end, if the log has odometry at both ends. */
 std::optional<TPose2D> odometryOfEnd(const GridSubmap& submap, const GridSubmap& next) {
+  if (submap.nodes.empty() || next.nodes.empty()) return std::nullopt;
   const auto &from = submap.nodes.front().odometry, &to = next.nodes.front().odometry;
   if (!from || !to) return std::nullopt;
   return *to - *from;
 }
 
-Link chainLink(const GridSubmaps& submaps, std::size_t k, const ChainNoise& noise) {
+/** Of consecutive submaps; across a gap in the log the next one may be anywhere that can be searched. */
+Link chainLink(const GridSubmaps& submaps, std::size_t k, const LoopSearchParams& params) {
   const GridSubmap &submap = *submaps[k], &next = *submaps[k + 1];
+  const ChainNoise& noise = params.chain;
   Link link{k, k + 1, submap.end_pose.mean.asTPose(), submap.end_pose.cov.asEigen(), false};
+  if (!submap.has_successor) {
+    const double xy = params.max_window, phi = params.max_window_phi;
+    link.covariance.diagonal() += Vector3d(xy * xy, xy * xy, phi * phi);
+    return link;
+  }
   const double path = std::max(1.0, submap.pathLength());
   Vector3d variance(noise.sigma_xy_per_m * noise.sigma_xy_per_m * path, 0,
                     noise.sigma_phi_per_m * noise.sigma_phi_per_m * path);
@@ -53,6 +61,7 @@ struct PathCircle {
   double x = 0, y = 0, radius = 0;  ///< m
 
   explicit PathCircle(const GridSubmap& submap) {
+    if (submap.nodes.empty()) return;
     for (const auto& node : submap.nodes) x += node.pose.x, y += node.pose.y;
     x /= static_cast<double>(submap.nodes.size());
     y /= static_cast<double>(submap.nodes.size());
@@ -87,6 +96,7 @@ class LoopSearch {
       closeLoops(k);
       if (progress && !progress(static_cast<double>(k + 1) / static_cast<double>(submaps_.size()))) {
         for (std::size_t rest = k + 1; rest < submaps_.size(); ++rest) extendChain(rest);
+        result_.stopped = k + 1 < submaps_.size();
         break;
       }
     }
@@ -102,7 +112,7 @@ class LoopSearch {
   };
 
   void extendChain(std::size_t k) {
-    const Link link = chainLink(submaps_, k - 1, params_.chain);
+    const Link link = chainLink(submaps_, k - 1, params_);
     result_.graph.frames.push_back(result_.graph.frames.back() + link.T_a_b);
     result_.graph.links.push_back(link);
   }
@@ -237,8 +247,8 @@ bool LoopSearch::acceptVerified(std::size_t k, const FrameCovariances& covarianc
     for (std::size_t q = 0; q < p; ++q) {
       const Link &a = pending_[p].link, &b = pending_[q].link;
       if (a.from == b.from || !agree(a, b, covariances)) continue;
-      const auto because = [](const Link& other) {
-        return fmt::format("agrees with {} to {}", other.from, other.to);
+      const auto because = [this](const Link& other) {
+        return fmt::format("agrees with {} to {}", submaps_[other.from]->id, submaps_[other.to]->id);
       };
       if (reasons[p].empty()) reasons[p] = because(b);
       if (reasons[q].empty()) reasons[q] = because(a);

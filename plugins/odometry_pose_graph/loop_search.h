@@ -42,6 +42,7 @@ struct LoopSearchParams {
 struct LoopSearchResult {
   FrameGraph graph;
   std::vector<Constraint> candidates;
+  bool stopped = false;  ///< the rest of the submaps only follows the chain
 };
 
 /** Closes loops: submaps in time order are matched to all older ones that they may overlap, as far as the

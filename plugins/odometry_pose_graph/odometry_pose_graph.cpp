@@ -16,7 +16,7 @@ namespace {
 std::vector<Constraint> chainConstraints(const pose_graph::FrameGraph& graph, const GridSubmaps& submaps) {
   std::vector<Constraint> constraints;
   for (const auto& link : graph.links) {
-    if (link.loop) continue;
+    if (link.loop || !submaps[link.from]->has_successor) continue;
     Constraint constraint;
     constraint.from = submaps[link.from]->id;
     constraint.to = submaps[link.to]->id;
@@ -32,7 +32,7 @@ std::vector<Constraint> chainConstraints(const pose_graph::FrameGraph& graph, co
 
 void OdometryPoseGraph::describe(ParameterTable& table) {
   using namespace pose_graph;
-  table.section(name(), "Loop closure and pose graph with fused odometry (Huang et al. 2024)");
+  table.section(name(), "Loop closure and robust pose graph of the submap frames");
   ChainNoise& chain = search_.chain;
   table.add("chain_sigma_xy", chain.sigma_xy_per_m, "m/√m", {0, 10},
             "How far the chain of submaps may drift beyond what the end poses say.");
@@ -84,8 +84,9 @@ JoinedMap OdometryPoseGraph::join(const GridSubmaps& submaps, const JoinedMap& i
   }
   const auto accepted = std::count_if(found.candidates.begin(), found.candidates.end(),
                                       [](const Constraint& c) { return c.accepted; });
-  joined.status = JoinStatus::kConverged;
-  joined.reason = fmt::format("{} of {} loop candidates accepted", accepted, found.candidates.size());
+  joined.status = found.stopped ? JoinStatus::kIterationLimit : JoinStatus::kConverged;
+  joined.reason = fmt::format("{} of {} loop candidates accepted{}", accepted, found.candidates.size(),
+                              found.stopped ? ", stopped before the end" : "");
   return joined;
 }
 

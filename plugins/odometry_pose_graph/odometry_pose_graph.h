@@ -6,12 +6,9 @@
 
 namespace submap_slam {
 
-/** Closes loops and fuses odometry.
- *
- * Searches for submaps that show the same place, and makes the graph of submap frames and nodes, odometry
- * included, consistent (Huang et al., "A Construction Optimization for Laser SLAM Based on Odometer
- * Constraint Fusion", ITC 53(2), 2024). The frames may be any distance from the truth that their chain allows
- * for.
+/** Closes loops: searches for submaps that show the same place, and makes the graph of submap frames
+ * consistent with what it finds (residuals and loss of Huang et al., "A Construction Optimization for Laser
+ * SLAM Based on Odometer Constraint Fusion", ITC 53(2), 2024). Odometry tells how far the chain may be off.
  */
 class OdometryPoseGraph : public SubmapJoiner {
   DEFINE_MRPT_OBJECT(OdometryPoseGraph, submap_slam)
@@ -19,7 +16,7 @@ class OdometryPoseGraph : public SubmapJoiner {
  public:
   std::string name() const override { return "odometry_pose_graph"; }
   std::string description() const override {
-    return "loop closure and pose graph with fused odometry (Huang et al. 2024)";
+    return "loop closure and robust pose graph of the submap frames";
   }
   void describe(ParameterTable& table) override;
 

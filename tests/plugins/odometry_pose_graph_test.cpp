@@ -181,6 +181,26 @@ TEST(LoopSearch, StopsWhenAskedTo) {
   const auto found = searchLoops(loop.submaps, {}, [](double) { return false; });
   EXPECT_EQ(found.graph.frames.size(), loop.submaps.size());
   EXPECT_TRUE(found.candidates.empty());
+  EXPECT_TRUE(found.stopped);
+  EXPECT_FALSE(searchLoops(loop.submaps, {}, {}).stopped);
+}
+
+TEST(LoopSearch, AGapInTheLogSaysNothingOfTheNextSubmap) {
+  const BentLoop loop(0);
+  loop.submaps[2]->has_successor = false;
+  const LoopSearchParams params;
+  const auto found = searchLoops(loop.submaps, params, [](double) { return false; });
+  EXPECT_GE(found.graph.links[2].covariance(0, 0), params.max_window * params.max_window);
+  EXPECT_LT(found.graph.links[1].covariance(0, 0), 1);
+}
+
+TEST(LoopSearch, SubmapsWithoutNodesAreOnlyChained) {
+  const BentLoop loop(0);
+  loop.submaps[1]->nodes.clear();
+  const auto found = searchLoops(loop.submaps, {}, {});
+  EXPECT_EQ(found.graph.frames.size(), loop.submaps.size());
+  for (const auto& frame : found.graph.frames) EXPECT_TRUE(std::isfinite(frame.x + frame.y + frame.phi));
+  for (const auto& c : found.candidates) EXPECT_FALSE(c.accepted && (c.from == 1 || c.to == 1));
 }
 
 TEST(OdometryPoseGraph, GivesFramesConstraintsAndAReason) {
@@ -195,6 +215,13 @@ TEST(OdometryPoseGraph, GivesFramesConstraintsAndAReason) {
   const auto chain = std::count_if(joined.constraints.begin(), joined.constraints.end(),
                                    [](const Constraint& c) { return !c.inter; });
   EXPECT_EQ(static_cast<std::size_t>(chain), loop.submaps.size() - 1);
+}
+
+TEST(OdometryPoseGraph, AGapInTheLogIsNoConstraint) {
+  const BentLoop loop(0);
+  loop.submaps[2]->has_successor = false;
+  const JoinedMap joined = OdometryPoseGraph().join(loop.submaps, chainSubmaps(loop.submaps), {});
+  for (const auto& c : joined.constraints) EXPECT_FALSE(!c.inter && c.from == 2);
 }
 
 TEST(OdometryPoseGraph, OneSubmapIsNothingToJoin) {
