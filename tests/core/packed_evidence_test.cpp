@@ -85,6 +85,15 @@ TEST(UnloadedSubmap, KeepsItsEvidenceForEveryReader) {
   expectSameGrid(submap->evidence, sparseGrid());
 }
 
+TEST(UnloadedSubmap, GivesWhatItKeepsAndALoadedOneIsPacked) {
+  const auto submap = submapWith(sparseGrid());
+  expectSameGrid(packedEvidenceOf(*submap)->unpacked(), sparseGrid());
+  EXPECT_TRUE(submap->evidenceIsLoaded()) << "packing leaves it loaded";
+  submap->unload();
+  EXPECT_EQ(packedEvidenceOf(*submap), submap->packedEvidence()) << "no second copy";
+  EXPECT_FALSE(submap->evidenceIsLoaded());
+}
+
 TEST(UnloadedSubmap, IsWrittenLikeALoadedOne) {
   const auto bytes = [](const GridSubmap& submap) {
     mrpt::io::CMemoryStream stream;

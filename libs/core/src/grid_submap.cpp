@@ -190,4 +190,9 @@ void GridSubmap::getVisualizationInto(mrpt::opengl::CSetOfObjects& out) const {
   out.insert(mrpt::opengl::stock_objects::CornerXYZSimple(1.0f));
 }
 
+std::shared_ptr<const PackedEvidence> packedEvidenceOf(const GridSubmap& submap) {
+  if (auto kept = submap.packedEvidence()) return kept;
+  return std::make_shared<const PackedEvidence>(submap.evidence);
+}
+
 }  // namespace submap_slam

@@ -23,12 +23,6 @@ struct FusionSums {
   double nl = 0, nn = 0, n = 0;
 };
 
-/** The packed evidence of a submap, which stays as it is: loaded or not. */
-std::shared_ptr<const PackedEvidence> packed(const GridSubmap& submap) {
-  if (auto kept = submap.packedEvidence()) return kept;
-  return std::make_shared<const PackedEvidence>(submap.evidence);
-}
-
 /** A submap in the global map frame, ready for bilinear look-ups. */
 class PlacedEvidence {
  public:
@@ -182,7 +176,7 @@ EvidenceGrid fuseEvidence(const GridSubmaps& submaps, const std::vector<CPosePDF
   double x_min = kInfinity, x_max = -kInfinity, y_min = kInfinity, y_max = -kInfinity, finest = kInfinity;
   std::vector<PlacedEvidence> placed;
   for (std::size_t k = 0; k < submaps.size(); ++k) {
-    PlacedEvidence submap(packed(*submaps[k]), frames[k].mean.asTPose());
+    PlacedEvidence submap(packedEvidenceOf(*submaps[k]), frames[k].mean.asTPose());
     if (submap.empty()) continue;
     submap.extend(x_min, x_max, y_min, y_max);
     finest = std::min(finest, submap.resolution());

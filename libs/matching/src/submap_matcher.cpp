@@ -19,11 +19,6 @@ PosePrior loosePrior(const TPose2D& mean) {
 
 }  // namespace
 
-std::shared_ptr<const PackedEvidence> packedEvidenceOf(const GridSubmap& submap) {
-  if (auto kept = submap.packedEvidence()) return kept;
-  return std::make_shared<const PackedEvidence>(submap.evidence);
-}
-
 SubmapMatcher::SubmapMatcher(const GridSubmap& reference, const SubmapMatcherParams& params)
     : params_(params),
       evidence_(packedEvidenceOf(reference)),

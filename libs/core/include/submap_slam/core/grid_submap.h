@@ -124,4 +124,8 @@ class LoadedEvidence {
   std::optional<EvidenceGrid> unpacked_;
 };
 
+/** The packed evidence of a submap, which stays as it is: what it keeps if it is unloaded, else packed now.
+ */
+std::shared_ptr<const PackedEvidence> packedEvidenceOf(const GridSubmap& submap);
+
 }  // namespace submap_slam

@@ -59,7 +59,4 @@ class SubmapMatcher {
   ScanMatcher matcher_;
 };
 
-/** The packed evidence of a submap, which stays as it is: loaded or not. */
-std::shared_ptr<const PackedEvidence> packedEvidenceOf(const GridSubmap& submap);
-
 }  // namespace submap_slam
