@@ -110,14 +110,6 @@ Estimate runPipeline(const Cell& cell, const Configuration& config, Metrics& fig
   return {readTum(out.file("trajectory.tum")), readGridMap(out.file("map.gridmap.gz"))};
 }
 
-Trajectory odometryOf(const std::vector<Frame>& frames) {
-  Trajectory trajectory;
-  for (const Frame& frame : frames)
-    if (frame.odometry) trajectory.push_back({frame.stamp, *frame.odometry});
-  if (trajectory.empty()) throw InputError("the log has no odometry");
-  return trajectory;
-}
-
 /** Poses from elsewhere, and the map that the scans make there. */
 Estimate runBaseline(const Cell& cell, const Configuration& config, const std::vector<Frame>& frames) {
   const OutputDirectory out(cell.folder, true);
@@ -128,6 +120,7 @@ Estimate runBaseline(const Cell& cell, const Configuration& config, const std::v
     estimate.trajectory = readTum(cell.truth);
   } else {
     const Trajectory odometry = odometryOf(frames);
+    if (odometry.empty()) throw InputError("the log has no odometry");
     writeTum(out.file("trajectory.tum"), odometry);
     estimate.trajectory = TimedTrajectory(odometry);
   }

@@ -1,12 +1,11 @@
 #include "experiment_table.h"
 
 #include <fmt/format.h>
-#include <submap_slam/core/errors.h>
 #include <submap_slam/core/version.h>
 #include <submap_slam/eval/error_statistics.h>
+#include <submap_slam/output/text_file.h>
 
 #include <algorithm>
-#include <fstream>
 
 #include "experiment_cells.h"
 
@@ -96,19 +95,12 @@ std::string csv(const Experiment& experiment, const std::vector<Row>& rows) {
   return text;
 }
 
-void writeText(const fs::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw OutputError(fmt::format("{}: cannot be written", file.string()));
-}
-
 }  // namespace
 
 std::size_t writeTables(const Experiment& experiment, const fs::path& folder) {
   const auto rows = rowsOf(experiment, folder);
-  writeText(folder / "table.md", markdown(experiment, rows));
-  writeText(folder / "table.csv", csv(experiment, rows));
+  writeText((folder / "table.md").string(), markdown(experiment, rows));
+  writeText((folder / "table.csv").string(), csv(experiment, rows));
   std::size_t missing = 0;
   for (const auto& row : rows) missing += row.cells.size() - row.complete();
   return missing;

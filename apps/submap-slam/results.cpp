@@ -1,27 +1,16 @@
 #include "results.h"
 
 #include <fmt/format.h>
-#include <submap_slam/core/errors.h>
 #include <submap_slam/output/graph_file.h>
 #include <submap_slam/output/map_image.h>
 #include <submap_slam/output/mrpt_files.h>
 #include <submap_slam/output/ros_map.h>
+#include <submap_slam/output/text_file.h>
 #include <submap_slam/output/trajectory_file.h>
 
-#include <fstream>
 #include <sstream>
 
 namespace submap_slam {
-namespace {
-
-void writeText(const std::string& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw OutputError(fmt::format("{}: cannot be written", file));
-}
-
-}  // namespace
 
 void writeResults(const OutputDirectory& out, const GridSubmaps& submaps, const JoinedMap& joined) {
   const Trajectory trajectory = trajectoryOf(submaps, joined.frames);

@@ -1,31 +1,13 @@
 #include "simulation_files.h"
 
-#include <fmt/format.h>
-#include <submap_slam/core/errors.h>
+#include <submap_slam/output/text_file.h>
 #include <submap_slam/output/trajectory_file.h>
 
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 namespace submap_slam {
 namespace fs = std::filesystem;
-namespace {
-
-Trajectory odometryOf(const SimulatedLog& log) {
-  Trajectory trajectory;
-  for (const Frame& frame : log.frames) trajectory.push_back({frame.stamp, *frame.odometry});
-  return trajectory;
-}
-
-void writeText(const std::string& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw OutputError(fmt::format("{}: cannot be written", file));
-}
-
-}  // namespace
 
 SimulationFiles::SimulationFiles(const std::string& prefix)
     : log(prefix + ".rawlog"),
@@ -56,7 +38,7 @@ std::size_t writeSimulation(const Scenario& scenario, uint64_t seed, RawlogForm 
   const SimulatedLog log = simulate(scenario, seed);
   writeText(files.ini, scenarioIni(scenario));
   writeTum(files.truth, log.truth);
-  writeTum(files.odometry, odometryOf(log));
+  writeTum(files.odometry, odometryOf(log.frames));
   const std::string unfinished = files.log + ".part";
   writeRawlog(unfinished, log, form);
   fs::rename(unfinished, files.log);

@@ -141,6 +141,20 @@ TEST(TrajectoryOf, PlacesTheNodesOfEverySubmap) {
   EXPECT_THROW(trajectoryOf(submaps, {gaussian({0, 0, 0})}), std::invalid_argument);
 }
 
+TEST(OdometryOf, LeavesOutFramesWithoutOdometry) {
+  std::vector<Frame> frames(3);
+  for (std::size_t k = 0; k < frames.size(); ++k)
+    frames[k].stamp = mrpt::Clock::fromDouble(100 + static_cast<double>(k));
+  frames[0].odometry = TPose2D(1, 2, 0.3);
+  frames[2].odometry = TPose2D(4, 5, 0.6);
+  const Trajectory odometry = odometryOf(frames);
+  ASSERT_EQ(odometry.size(), 2u);
+  EXPECT_EQ(odometry[0].pose, TPose2D(1, 2, 0.3));
+  EXPECT_EQ(odometry[1].pose, TPose2D(4, 5, 0.6));
+  EXPECT_EQ(odometry[1].stamp, frames[2].stamp);
+  EXPECT_TRUE(odometryOf({}).empty());
+}
+
 TEST(FuseEvidence, OneSubmapIsItsOwnMap) {
   auto submap = emptySubmap();
   set(*submap, 0.25, 0.35, 3.5f, 4);

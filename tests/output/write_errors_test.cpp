@@ -6,6 +6,7 @@
 #include <submap_slam/output/map_image.h>
 #include <submap_slam/output/mrpt_files.h>
 #include <submap_slam/output/ros_map.h>
+#include <submap_slam/output/text_file.h>
 #include <submap_slam/output/trajectory_file.h>
 
 #include <functional>
@@ -61,6 +62,7 @@ INSTANTIATE_TEST_SUITE_P(
                            [](const auto& file) {
                              writeScene(file, sampleGrid(), sampleTrajectory(), sampleFrames());
                            }},
+                    Writer{"Text", [](const auto& file) { writeText(file, "seed = 1\n"); }},
                     Writer{"Tum", [](const auto& file) { writeTum(file, sampleTrajectory()); }},
                     Writer{"G2o", [](const auto& file) { writeG2o(file, sampleFrames(), {}); }},
                     Writer{"Json",

@@ -169,6 +169,13 @@ Trajectory trajectoryOf(const GridSubmaps& submaps, const std::vector<CPosePDFGa
   return trajectory;
 }
 
+Trajectory odometryOf(const std::vector<Frame>& frames) {
+  Trajectory trajectory;
+  for (const Frame& frame : frames)
+    if (frame.odometry) trajectory.push_back({frame.stamp, *frame.odometry});
+  return trajectory;
+}
+
 EvidenceGrid fuseEvidence(const GridSubmaps& submaps, const std::vector<CPosePDFGaussian>& frames,
                           double resolution) {
   requireOneFrameEach(submaps, frames);

@@ -4,6 +4,7 @@
 #include <mrpt/math/TPose2D.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
 #include <submap_slam/core/evidence_grid.h>
+#include <submap_slam/core/frame.h>
 #include <submap_slam/core/grid_submap.h>
 
 #include <string>
@@ -15,7 +16,7 @@ using GridSubmaps = std::vector<GridSubmap::Ptr>;
 
 struct StampedPose {
   mrpt::Clock::time_point stamp;
-  mrpt::math::TPose2D pose;  ///< T_w_robot (m, rad)
+  mrpt::math::TPose2D pose;  ///< T_w_robot, or T_odom_robot (m, rad)
 };
 using Trajectory = std::vector<StampedPose>;
 
@@ -65,6 +66,9 @@ JoinedMap chainSubmaps(const GridSubmaps& submaps);
 
 /** The pose T_w_robot of every node of every submap, in log order. */
 Trajectory trajectoryOf(const GridSubmaps& submaps, const std::vector<mrpt::poses::CPosePDFGaussian>& frames);
+
+/** The pose by odometry, T_odom_robot, of every frame that has one, in the order of the frames. */
+Trajectory odometryOf(const std::vector<Frame>& frames);
 
 /** Global map for given frames in closed form: M̂_j = Σ_i ω_ij L_i(p_ij) / Σ_i ω_ij², ω_ij = N_i(p_ij) /
  * N_M(m_j), N_M = Σ_i N_i (Wang, Zhao, Huang, "Grid-based Submap Joining", eq. 15), L_i and N_i bilinear.
