@@ -1,8 +1,8 @@
 #include "experiment.h"
 
 #include <fmt/format.h>
-#include <mrpt/config/CConfigFile.h>
 #include <submap_slam/core/errors.h>
+#include <submap_slam/core/ini_file.h>
 #include <submap_slam/core/parameters.h>
 
 #include <algorithm>
@@ -18,9 +18,7 @@ namespace submap_slam {
 namespace fs = std::filesystem;
 namespace {
 
-using mrpt::config::CConfigFile;
-
-const std::string kDataPrefix = "data ", kSettingPrefix = "setting ";
+const std::string kDataPrefix = "data ", kSettingPrefix = "setting ", kSimulationPrefix = "simulation.";
 
 /** Section [experiment]: lists of words. */
 struct Lists {
@@ -52,16 +50,52 @@ bool startsWith(const std::string& text, const std::string& prefix) {
   return text.compare(0, prefix.size(), prefix) == 0;
 }
 
-std::vector<std::string> keysOf(const CConfigFile& ini, const std::string& section) {
-  std::vector<std::string> keys;
-  ini.getAllKeys(section, keys);
-  return keys;
-}
+/** A ConfigError that says in which line already. */
+struct LineError : ConfigError {
+  using ConfigError::ConfigError;
+};
 
-void requireSection(const CConfigFile& ini, const std::string& key, const std::string& section) {
-  if (!ini.sectionExists(section))
-    throw ConfigError(fmt::format("[experiment] {}: there is no section [{}]", key, section));
-}
+/** The lines of an experiment file. */
+class ExperimentFile {
+ public:
+  explicit ExperimentFile(const std::string& name) : name_(name), entries_(readIni(name)) {}
+
+  const std::vector<IniEntry>& entries() const { return entries_; }
+
+  /** The lines with a key in a section. */
+  std::vector<IniEntry> keysOf(const std::string& section) const {
+    std::vector<IniEntry> keys;
+    std::copy_if(entries_.begin(), entries_.end(), std::back_inserter(keys),
+                 [&](const IniEntry& e) { return e.section == section && !e.key.empty(); });
+    return keys;
+  }
+
+  /** The heading of a section that a list of [experiment] names; throws ConfigError if there is none. */
+  const IniEntry& headingOf(const std::string& section, const std::string& list) const {
+    const auto heading = std::find_if(entries_.begin(), entries_.end(),
+                                      [&](const IniEntry& e) { return e.section == section; });
+    if (heading == entries_.end())
+      throw ConfigError(fmt::format("[experiment] {}: there is no section [{}]", list, section));
+    return *heading;
+  }
+
+  /** Calls `read`, whose ConfigErrors get file and line of the entry. */
+  template <class Read>
+  void at(const IniEntry& entry, Read read) const {
+    try {
+      read();
+    } catch (const ConfigError& e) {
+      throw LineError(fmt::format("{}:{}: {}", name_, entry.line, e.what()));
+    }
+  }
+
+ private:
+  std::string name_;
+  std::vector<IniEntry> entries_;
+};
+
+/** A line of [setting NAME], or of the simulation in [data NAME], as "section.key=value". */
+std::string assignmentOf(const IniEntry& entry) { return fmt::format("{}={}", entry.key, entry.value); }
 
 /** Names become folders. */
 void requireName(const std::string& name) {
@@ -76,51 +110,81 @@ std::string existingFile(const std::string& name, const fs::path& folder) {
   return file.string();
 }
 
-ExperimentData readData(const CConfigFile& ini, const std::string& name, const fs::path& folder) {
+void setData(ExperimentData& data, const IniEntry& entry, const fs::path& folder) {
+  const std::string& key = entry.key;
+  if (key == "world") {
+    data.world = entry.value;
+  } else if (key == "log") {
+    data.log = existingFile(entry.value, folder);
+  } else if (key == "truth") {
+    data.truth = existingFile(entry.value, folder);
+  } else if (key == "relations") {
+    data.relations = existingFile(entry.value, folder);
+  } else if (startsWith(key, kSimulationPrefix)) {
+    data.simulation.push_back(assignmentOf(entry));
+  } else {
+    throw ConfigError(fmt::format(
+        "unknown key [{}] {}; expected world, simulation.KEY, log, truth or relations", entry.section, key));
+  }
+}
+
+/** Throws ConfigError for an unknown world and for settings that the simulation would refuse. */
+void checkSimulation(const ExperimentFile& file, const std::vector<IniEntry>& keys,
+                     const std::string& world) {
+  for (const auto& entry : keys)
+    if (entry.key == "world") file.at(entry, [&] { loadScenario(world, "", {}); });
+  for (const auto& entry : keys)
+    if (startsWith(entry.key, kSimulationPrefix))
+      file.at(entry, [&] { loadScenario(world, "", {assignmentOf(entry)}); });
+}
+
+ExperimentData readData(const ExperimentFile& file, const std::string& name, const fs::path& folder) {
   requireName(name);
   const std::string section = kDataPrefix + name;
-  requireSection(ini, "data", section);
+  const IniEntry& heading = file.headingOf(section, "data");
   ExperimentData data;
   data.name = name;
-  for (const auto& key : keysOf(ini, section)) {
-    const std::string value = ini.read_string(section, key, "");
-    if (key == "world") {
-      data.world = value;
-    } else if (key == "log" || key == "truth" || key == "relations") {
-      (key == "log" ? data.log : key == "truth" ? data.truth : data.relations) = existingFile(value, folder);
-    } else if (startsWith(key, "simulation.")) {
-      data.simulation.push_back(fmt::format("{}={}", key, value));
-    } else {
-      throw ConfigError(fmt::format(
-          "unknown key [{}] {}; expected world, simulation.KEY, log, truth or relations", section, key));
-    }
-  }
-  if (data.world.empty() == data.log.empty())
-    throw ConfigError(fmt::format("[{}]: needs either a world or a log", section));
-  if (!data.world.empty()) loadScenario(data.world, "", data.simulation);  // throws for what is wrong
+  const auto keys = file.keysOf(section);
+  for (const auto& entry : keys) file.at(entry, [&] { setData(data, entry, folder); });
+  file.at(heading, [&] {
+    if (data.world.empty() == data.log.empty())
+      throw ConfigError(fmt::format("[{}]: needs either a world or a log", section));
+  });
+  if (!data.world.empty()) checkSimulation(file, keys, data.world);
   return data;
 }
 
-ExperimentSetting readSetting(const CConfigFile& ini, const std::string& name) {
-  requireName(name);
-  const std::string section = kSettingPrefix + name;
-  requireSection(ini, "settings", section);
-  ExperimentSetting setting;
-  setting.name = name;
-  for (const auto& key : keysOf(ini, section)) {
-    const std::string value = ini.read_string(section, key, "");
-    if (key == "baseline") {
-      setting.baseline = value;
-    } else {
-      setting.settings.push_back(fmt::format("{}={}", key, value));
-    }
+void setSetting(ExperimentSetting& setting, const IniEntry& entry) {
+  if (entry.key != "baseline") {
+    setting.settings.push_back(assignmentOf(entry));
+    return;
   }
+  setting.baseline = entry.value;
   if (!setting.baseline.empty() && setting.baseline != "odometry" && setting.baseline != "truth")
     throw ConfigError(
-        fmt::format("[{}] baseline = '{}': expected odometry or truth", section, setting.baseline));
-  ConfigurationOptions options;
-  options.settings = setting.settings;
-  loadConfiguration(options)->joinerChain();  // throws for what is wrong
+        fmt::format("[{}] baseline = '{}': expected odometry or truth", entry.section, setting.baseline));
+}
+
+/** Throws ConfigError or PluginError for what the pipeline would refuse. */
+void checkSettings(const ExperimentFile& file, const IniEntry& heading, const std::vector<IniEntry>& keys) {
+  ConfigurationOptions options;  // plugins first: they bring parameters themselves
+  for (const auto& entry : keys)
+    if (entry.key == "plugins.load") options.settings.push_back(assignmentOf(entry));
+  const auto config = loadConfiguration(options);
+  for (const auto& entry : keys)
+    if (entry.key != "baseline") file.at(entry, [&] { config->table.set(assignmentOf(entry)); });
+  file.at(heading, [&] { config->joinerChain(); });
+}
+
+ExperimentSetting readSetting(const ExperimentFile& file, const std::string& name) {
+  requireName(name);
+  const std::string section = kSettingPrefix + name;
+  const IniEntry& heading = file.headingOf(section, "settings");
+  ExperimentSetting setting;
+  setting.name = name;
+  const auto keys = file.keysOf(section);
+  for (const auto& entry : keys) file.at(entry, [&] { setSetting(setting, entry); });
+  checkSettings(file, heading, keys);
   return setting;
 }
 
@@ -142,35 +206,33 @@ uint64_t readSeed(const std::string& text) {
   return seed;
 }
 
-Lists readLists(const CConfigFile& ini, const std::vector<std::string>& overrides) {
+Lists readLists(const ExperimentFile& file, const std::vector<std::string>& overrides) {
   Lists lists;
   ParameterTable table;
   describe(table, lists);
-  for (const auto& key : keysOf(ini, "experiment"))
-    table.set("experiment", key, ini.read_string("experiment", key, ""));
+  for (const auto& entry : file.keysOf("experiment"))
+    file.at(entry, [&] { table.set("experiment", entry.key, entry.value); });
   for (const auto& setting : overrides) table.set(setting);
   return lists;
 }
 
-void refuseUnknownSections(const CConfigFile& ini) {
-  std::vector<std::string> sections;
-  ini.getAllSections(sections);
-  for (const auto& section : sections)
-    if (section != "experiment" && !startsWith(section, kDataPrefix) && !startsWith(section, kSettingPrefix))
-      throw ConfigError(
-          fmt::format("unknown section [{}]; expected [experiment], [data NAME] or [setting NAME]", section));
+void refuseUnknownSection(const IniEntry& entry) {
+  const std::string& section = entry.section;
+  if (section != "experiment" && !startsWith(section, kDataPrefix) && !startsWith(section, kSettingPrefix))
+    throw ConfigError(
+        fmt::format("unknown section [{}]; expected [experiment], [data NAME] or [setting NAME]", section));
 }
 
-Experiment readExperiment(const CConfigFile& ini, const std::vector<std::string>& overrides,
+Experiment readExperiment(const ExperimentFile& file, const std::vector<std::string>& overrides,
                           const fs::path& data_folder) {
-  refuseUnknownSections(ini);
-  const Lists lists = readLists(ini, overrides);
+  for (const auto& entry : file.entries()) file.at(entry, [&] { refuseUnknownSection(entry); });
+  const Lists lists = readLists(file, overrides);
   Experiment experiment;
   experiment.title = lists.title;
   for (const auto& name : listOf("data", lists.data))
-    experiment.data.push_back(readData(ini, name, data_folder));
+    experiment.data.push_back(readData(file, name, data_folder));
   for (const auto& name : listOf("settings", lists.settings))
-    experiment.settings.push_back(readSetting(ini, name));
+    experiment.settings.push_back(readSetting(file, name));
   for (const auto& seed : listOf("seeds", lists.seeds)) experiment.seeds.push_back(readSeed(seed));
   for (const auto& key : listOf("columns", lists.columns)) experiment.columns.push_back(readColumn(key));
   return experiment;
@@ -213,10 +275,12 @@ const std::vector<ExperimentColumn>& experimentColumns() {
 
 Experiment loadExperiment(const std::string& file, const std::vector<std::string>& overrides,
                           const std::string& data_folder) {
-  if (!fs::is_regular_file(file)) throw InputError(fmt::format("{}: no such ini file", file));
+  const ExperimentFile description(file);
   const fs::path folder = data_folder.empty() ? fs::path(file).parent_path() : fs::path(data_folder);
   try {
-    return readExperiment(CConfigFile(file), overrides, folder);
+    return readExperiment(description, overrides, folder);
+  } catch (const LineError&) {
+    throw;
   } catch (const ConfigError& e) {
     throw ConfigError(fmt::format("{}: {}", file, e.what()));
   }

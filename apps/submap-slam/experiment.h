@@ -46,8 +46,9 @@ const std::vector<ExperimentColumn>& experimentColumns();
  * @param overrides   "experiment.key=value"
  * @param data_folder where relative files of recordings are; empty: the folder of `file`
  *
- * Throws InputError if a file is missing, ConfigError for anything unknown, wrong settings of the pipeline
- * and of the simulation included, so that nothing runs that cannot end. */
+ * Throws InputError if a file is missing, ConfigError for anything unknown or set twice, with file and line
+ * where there is one, wrong settings of the pipeline and of the simulation included, so that nothing runs
+ * that cannot end. */
 Experiment loadExperiment(const std::string& file, const std::vector<std::string>& overrides,
                           const std::string& data_folder);
 

@@ -162,6 +162,33 @@ TEST_F(ExperimentTest, RefusesBadDescriptions) {
   EXPECT_FALSE(fs::exists(path("out")));
 }
 
+TEST_F(ExperimentTest, NamesTheLineThatIsWrong) {
+  const std::string file = path("bad.ini");
+  const auto refuses = [&](const std::string& line, const std::string& text) {
+    writeFile(file, "[experiment]\ndata = hall\nsettings = chain\ncolumns = auc\n" + std::string(kData) +
+                        "[setting chain]\n" + line + "\njoining.chain =\n");
+    expectRefused(run({"experiment", file, "-o", path("out")}), file + ":" + text);
+  };
+  refuses("submaps.max_distance 3", "10: 'submaps.max_distance 3': expected key = value");
+  refuses("[setting", "10: '[setting': expected [section]");
+  refuses("joining.chain = grid_gauss_newton",
+          "11: [setting chain] joining.chain was set in line 10 already");
+  refuses("submaps.max_distance = far", "10: [submaps] max_distance = 'far': expected a number");
+  refuses("max_distance = 3", "10: 'max_distance=3': expected section.key=value");
+  refuses(
+      "grid_gauss_newton.levels = 10\ngrid_gauss_newton.finest_level = 6\n"
+      "joining.chain = grid_gauss_newton\n[data unused]",
+      "9: [grid_gauss_newton] levels + finest_level");
+  refuses("[settings none]", "10: unknown section [settings none]");
+  refuses("[data hall]\nbeams = 3", "11: unknown key [data hall] beams");
+  refuses("[data hall]\nlog = bad.ini\n[data unused]", "5: [data hall]: needs either a world or a log");
+  refuses("[data hall]\nsimulation.max_scans = 5", "11: [data hall] simulation.max_scans was set in line 8");
+  refuses("[data hall]\nsimulation.scan_rate = -1\n[data unused]",
+          "11: [simulation] scan_rate = -1: must lie in");
+  refuses("[experiment]\nsedes = 1", "11: unknown key [experiment] sedes; did you mean [experiment] seeds?");
+  EXPECT_FALSE(fs::exists(path("out")));
+}
+
 TEST_F(ExperimentTest, RecordsOverridesAndRunsFromTheRecord) {
   const std::string setting = "experiment.seeds=7";
   succeed({"experiment", experiment("odometry"), "-o", path("out"), "--set", setting});
