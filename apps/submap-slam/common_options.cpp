@@ -4,6 +4,8 @@
 #include <submap_slam/core/errors.h>
 #include <tbb/info.h>
 
+#include <charconv>
+
 namespace submap_slam {
 namespace {
 
@@ -40,6 +42,17 @@ void addConfigurationOptions(CLI::App& command, ConfigurationOptions& options) {
           "Seed of the random streams, as --set run.seed=N")
       ->type_name("N")
       ->group(group);
+}
+
+uint64_t parseSeed(const std::string& text, const std::string& where) {
+  uint64_t seed = 0;
+  const char* const text_end = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), text_end, seed);
+  if (error == std::errc::result_out_of_range)
+    throw ConfigError(fmt::format("{}: '{}' is too large", where, text));
+  if (error != std::errc() || end != text_end)
+    throw ConfigError(fmt::format("{}: '{}' is not a whole number, 0 or more", where, text));
+  return seed;
 }
 
 void addLogOptions(CLI::App& command, ConfigurationOptions& options) {

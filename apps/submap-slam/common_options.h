@@ -40,6 +40,9 @@ void addPluginOption(CLI::App& command, ConfigurationOptions& options);
 /** -c, --set, -p and --seed. */
 void addConfigurationOptions(CLI::App& command, ConfigurationOptions& options);
 
+/** A seed from text; throws ConfigError, beginning with `where`, if it is no whole number, 0 or more. */
+uint64_t parseSeed(const std::string& text, const std::string& where);
+
 /** --from, --to and --sensor. */
 void addLogOptions(CLI::App& command, ConfigurationOptions& options);
 

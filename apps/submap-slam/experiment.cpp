@@ -6,7 +6,6 @@
 #include <submap_slam/core/parameters.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <iterator>
 #include <sstream>
@@ -198,14 +197,6 @@ ExperimentColumn readColumn(const std::string& key) {
                                 fmt::join(known, ", ")));
 }
 
-uint64_t readSeed(const std::string& text) {
-  uint64_t seed = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
-  if (error != std::errc() || end != text.data() + text.size())
-    throw ConfigError(fmt::format("[experiment] seeds: '{}' is not a whole number", text));
-  return seed;
-}
-
 Lists readLists(const ExperimentFile& file, const std::vector<std::string>& overrides) {
   Lists lists;
   ParameterTable table;
@@ -233,7 +224,8 @@ Experiment readExperiment(const ExperimentFile& file, const std::vector<std::str
     experiment.data.push_back(readData(file, name, data_folder));
   for (const auto& name : listOf("settings", lists.settings))
     experiment.settings.push_back(readSetting(file, name));
-  for (const auto& seed : listOf("seeds", lists.seeds)) experiment.seeds.push_back(readSeed(seed));
+  for (const auto& seed : listOf("seeds", lists.seeds))
+    experiment.seeds.push_back(parseSeed(seed, "[experiment] seeds"));
   for (const auto& key : listOf("columns", lists.columns)) experiment.columns.push_back(readColumn(key));
   return experiment;
 }

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "common_options.h"
 #include "reporter.h"
 #include "simulation_files.h"
 
@@ -12,9 +13,8 @@ namespace submap_slam {
 namespace {
 
 struct SimulateOptions {
-  std::string world, prefix, ini_file;
+  std::string world, prefix, ini_file, seed = "1";
   std::vector<std::string> settings;
-  uint64_t seed = 1;
   bool actions = false, overwrite = false, quiet = false;
 };
 
@@ -25,11 +25,12 @@ void refuseExisting(const SimulationFiles& files) {
 }
 
 int runSimulate(const SimulateOptions& options) {
+  const uint64_t seed = parseSeed(options.seed, "--seed");
   const Scenario scenario = loadScenario(options.world, options.ini_file, options.settings);
   const SimulationFiles files(options.prefix);
   if (!options.overwrite) refuseExisting(files);
   const RawlogForm form = options.actions ? RawlogForm::kActions : RawlogForm::kObservations;
-  const std::size_t scans = writeSimulation(scenario, options.seed, form, files);
+  const std::size_t scans = writeSimulation(scenario, seed, form, files);
   Reporter(options.quiet)
       .note(fmt::format("{} scans, {:.1f} s\nlog: {}\ntruth: {}\nodometry: {}", scans,
                         static_cast<double>(scans - 1) / scenario.scan_rate, files.log, files.truth,

@@ -157,6 +157,7 @@ TEST_F(ExperimentTest, RefusesBadDescriptions) {
   refuses(head + kChain + "[data hall]\ntruth = missing.tum\n", "missing.tum: no such file");
   refuses(head + kChain + "[data hall]\n", "needs either a world or a log");
   refuses(head + "seeds = one\n" + kData + kChain, "'one' is not a whole number");
+  refuses(head + "seeds = 1, -1\n" + kData + kChain, "'-1' is not a whole number, 0 or more");
   refuses("[experiment]\ndata = hall\nsettings = chain\ncolumns = beauty\n" + std::string(kData) + kChain,
           "unknown column 'beauty'");
   EXPECT_FALSE(fs::exists(path("out")));

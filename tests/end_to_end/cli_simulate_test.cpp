@@ -66,6 +66,10 @@ TEST_F(SimulateTest, RefusesWhatItCannotDo) {
   expectRefused(run(simulate("out", {"--set", "simulation.beam=9"})), "did you mean [simulation] beams?");
   expectRefused(run(simulate("out", {"--set", "simulation.beams=1"})), "beams");
   expectRefused(run(simulate("out", {"-c", path("missing.ini")})), "missing.ini: no such ini file");
+  for (const char* seed : {"-1", "1.5", "two", ""})
+    expectRefused(run(simulate("out", {"--seed", seed})),
+                  "--seed: '" + std::string(seed) + "' is not a whole number, 0 or more");
+  expectRefused(run(simulate("out", {"--seed", "18446744073709551616"})), "is too large");
   EXPECT_FALSE(fs::exists(out + ".rawlog"));
 
   writeFile(path("out.truth.tum"), "precious");
