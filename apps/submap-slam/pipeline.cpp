@@ -56,9 +56,7 @@ void addRunMetrics(Metrics& metrics, const Configuration& config, const Reporter
 void requireObservations(const EvidenceGrid& map) {
   if (map.observedCells() == 0)
     throw InputError(
-        "the map would be empty: no beam of any scan is valid, at least [reader] min_range and at most "
-        "[mapper] "
-        "max_range long");
+        "the map would be empty: no scan has a valid beam between [reader] min_range and [mapper] max_range");
 }
 
 /** Joins and writes everything but metrics.json. */

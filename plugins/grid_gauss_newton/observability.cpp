@@ -13,6 +13,8 @@ namespace {
 /** Share of its information that the chain keeps: hardly any, but enough for a regular matrix. */
 constexpr double kWeakPrior = 1e-4;
 
+/** A turn counts as open if it moves what lies this far from the frame by more than half a cell: half the
+ * path of a submap of default length (10 m), which is its middle if the path is straight. */
 constexpr double kLever_m = 5;
 
 constexpr std::size_t kMostInWords = 3;
