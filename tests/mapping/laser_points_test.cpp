@@ -124,8 +124,10 @@ TEST(LaserPoints, NormalsOfAFlatWallPointAcrossIt) {
     const auto out = toLaserPoints(frameOf({flatWall(alpha, 2)}), 100);
     ASSERT_EQ(out.points.size(), 121u);
     for (const auto& p : out.points) {
-      EXPECT_NEAR(p.normal_cos2, std::cos(2 * alpha), 1e-3) << alpha;
-      EXPECT_NEAR(p.normal_sin2, std::sin(2 * alpha), 1e-3) << alpha;
+      // Towards the scanner, with the cosine of the angle of incidence for length.
+      const double incidence = (p.x * std::cos(alpha) + p.y * std::sin(alpha)) / std::hypot(p.x, p.y);
+      EXPECT_NEAR(p.normal_x, -incidence * std::cos(alpha), 1e-3) << alpha;
+      EXPECT_NEAR(p.normal_y, -incidence * std::sin(alpha), 1e-3) << alpha;
     }
   }
 }
@@ -142,17 +144,17 @@ TEST(LaserPoints, NoNormalInACornerNorForALonePoint) {
                     100);
   // The neighbours of the corner point lie 0.25 rad away on walls at right angles.
   const auto& p = corner.points[1];
-  EXPECT_EQ(p.normal_cos2, 0);
-  EXPECT_EQ(p.normal_sin2, 0);
+  EXPECT_EQ(p.normal_x, 0);
+  EXPECT_EQ(p.normal_y, 0);
 
   const auto lone = toLaserPoints(frameOf({scanOf({0, 3, 0}, 1)}), 100);
-  EXPECT_EQ(lone.points[0].normal_cos2, 0);
-  EXPECT_EQ(lone.points[0].normal_sin2, 0);
+  EXPECT_EQ(lone.points[0].normal_x, 0);
+  EXPECT_EQ(lone.points[0].normal_y, 0);
 }
 
 TEST(LaserPoints, NoNormalAcrossAGap) {
   const auto out = toLaserPoints(frameOf({scanOf({1, 5, 1}, 0.1)}), 100);
-  for (const auto& p : out.points) EXPECT_EQ(std::hypot(p.normal_cos2, p.normal_sin2), 0);
+  for (const auto& p : out.points) EXPECT_EQ(std::hypot(p.normal_x, p.normal_y), 0);
 }
 
 }  // namespace

@@ -41,6 +41,19 @@ class Matcher : public ::testing::Test {
 /** A scan of one beam. */
 LaserPoints only(const LaserPoint& point) { return pointsAt({point}); }
 
+TEST(ScanMatcher, TheOtherFaceOfAWallIsNoMatch) {
+  SurfelMap map{SurfelMapParams{}};
+  LaserPoints wall = wallPoints(-1, 1, 1, 1);
+  for (auto& p : wall.points) p.normal_y = -1;
+  map.insert(wall, {});
+  const ScanMatcher matcher(MatcherParams{}, kSearchRadius);
+  EXPECT_EQ(matcher.evaluate(map, wall, {}).inliers, wall.points.size());
+  for (auto& p : wall.points) p.normal_y = 1;
+  const auto behind = matcher.evaluate(map, wall, {0, 0.1, 0});
+  EXPECT_EQ(behind.inliers, 0u);
+  EXPECT_TRUE(behind.gradient.isZero());
+}
+
 TEST_F(Matcher, GradientIsTheDerivativeOfTheCost) {
   constexpr double kStep = 1e-6;
   const TPose2D pose(0.13, 0.02, 0.12);

@@ -125,15 +125,48 @@ TEST(SurfelMap, EndpointsAreMovedByThePose) {
 TEST(SurfelMap, ScanNormalsAreMovedByThePoseToo) {
   SurfelMap map{SurfelMapParams{}};
   const double normal = 0.3, heading = 1.1;  // a lone point: only its scan normal can give a direction
-  map.insert(
-      pointsAt({{1, 0, static_cast<float>(std::cos(2 * normal)), static_cast<float>(std::sin(2 * normal))}}),
-      {0, 0, heading});
+  map.insert(pointsAt({{1, 0, static_cast<float>(0.6 * std::cos(normal)),
+                        static_cast<float>(0.6 * std::sin(normal))}}),
+             {0, 0, heading});
   ASSERT_EQ(map.surfels().size(), 1u);
   const Surfel& surfel = map.surfels()[0];
   EXPECT_EQ(surfel.kind, Surfel::Kind::kLine);
   const double along = static_cast<double>(surfel.normal_x) * std::cos(normal + heading) +
                        static_cast<double>(surfel.normal_y) * std::sin(normal + heading);
   EXPECT_NEAR(std::abs(along), 1, 1e-5);
+}
+
+/** Endpoints on y = height with the normal of one of its sides. */
+LaserPoints faceAt(float height, float side) {
+  LaserPoints face = wallPoints(-1, height, 1, height);
+  for (auto& p : face.points) p.normal_y = side;
+  return face;
+}
+
+TEST(SurfelMap, TheTwoFacesOfAThinWallKeepTheirOwnLines) {
+  SurfelMap map{SurfelMapParams{}};
+  map.insert(faceAt(0.025f, -1), {});
+  map.insert(faceAt(0.125f, 1), {});
+  for (const auto& [y, side] : {std::pair{0.025, -1.0f}, {0.125, 1.0f}}) {
+    const Surfel* surfel = map.nearest(0, y);
+    ASSERT_NE(surfel, nullptr);
+    EXPECT_NEAR(distanceToLine(*surfel, 0, y), 0, 1e-4);
+    EXPECT_FALSE(surfel->facesAwayFrom(0, side));
+    EXPECT_TRUE(surfel->facesAwayFrom(0, -side));
+    EXPECT_FALSE(surfel->facesAwayFrom(0, 0));
+    EXPECT_FALSE(surfel->facesAwayFrom(1, 0));
+    EXPECT_FALSE(surfel->facesAwayFrom(0.995f, -0.1f * side));  // grazing: either side
+  }
+}
+
+TEST(SurfelMap, WhatWasSeenFromBothSidesFacesNowhere) {
+  SurfelMap map{SurfelMapParams{}};
+  map.insert(faceAt(0.025f, -1), {});
+  map.insert(faceAt(0.025f, 1), {});
+  const Surfel* surfel = map.nearest(0, 0.025);
+  ASSERT_NE(surfel, nullptr);
+  EXPECT_FALSE(surfel->facesAwayFrom(0, 1));
+  EXPECT_FALSE(surfel->facesAwayFrom(0, -1));
 }
 
 TEST(SurfelMap, ALonePointWithoutNormalIsAPoint) {
@@ -145,7 +178,7 @@ TEST(SurfelMap, ALonePointWithoutNormalIsAPoint) {
 
 TEST(SurfelMap, ContradictingNormalsLeaveAPoint) {
   SurfelMap map{SurfelMapParams{}};
-  map.insert(pointsAt({{1.01f, 0.01f, 1, 0}, {1.01f, 0.01f, -1, 0}}), {});
+  map.insert(pointsAt({{1.01f, 0.01f, 1, 0}, {1.01f, 0.01f, 0, 1}}), {});
   EXPECT_EQ(map.surfels()[0].kind, Surfel::Kind::kPoint);
 }
 

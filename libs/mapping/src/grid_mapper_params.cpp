@@ -107,7 +107,9 @@ void describe(ParameterTable& table, GridMapperParams& p) {
   table.add("slip_beyond", p.filter.slip_beyond, "", kPositive,
             "A match this many sigmas from odometry's prediction makes odometry doubtful");
   table.add("slip_cost", p.filter.slip_cost, "", kNonNegative,
-            "Negative log probability that odometry is wrong at a doubtful scan");
+            "Negative log probability that wheels slip at a doubtful scan while odometry goes on evenly");
+  table.add("surprise_cost", p.filter.surprise_cost, "", kNonNegative,
+            "The same where odometry says something quite different from the motion before");
   table.add("slip_information", p.filter.slip_information, "", {1e-6, 1},
             "Share of the odometry prior's information that is believed during a rescue");
   describe(table, p.filter.search);

@@ -33,16 +33,18 @@ Tangent between(const LaserPoint& a, const LaserPoint& b) {
 
 float cosine(const Tangent& a, const Tangent& b) { return a.x * b.x + a.y * b.y; }
 
-/** Double-angle normal from the tangents to the previous and the next endpoint. */
-void setNormal(LaserPoint& p, const Tangent& before, const Tangent& after) {
+/** Normal from the tangents to the previous and the next endpoint, towards the scanner. */
+void setNormal(LaserPoint& p, const Eigen::Vector2d& origin, const Tangent& before, const Tangent& after) {
   if (!before.valid && !after.valid) return;
   if (before.valid && after.valid && cosine(before, after) < kMinCosine) return;
   const float tx = (before.valid ? before.x : 0) + (after.valid ? after.x : 0);
   const float ty = (before.valid ? before.y : 0) + (after.valid ? after.y : 0);
-  const float norm2 = tx * tx + ty * ty;
-  // Normal (−ty, tx): cos 2α = (ty² − tx²)/|t|², sin 2α = −2 tx ty/|t|².
-  p.normal_cos2 = (ty * ty - tx * tx) / norm2;
-  p.normal_sin2 = -2 * tx * ty / norm2;
+  const auto to_x = static_cast<float>(origin.x()) - p.x, to_y = static_cast<float>(origin.y()) - p.y;
+  // Of the normal (−ty, tx)/|t|; positive on the side of the scanner.
+  const float cosine_of_incidence = (tx * to_y - ty * to_x) / (std::hypot(tx, ty) * std::hypot(to_x, to_y));
+  const float scale = cosine_of_incidence / std::hypot(tx, ty);
+  p.normal_x = scale * -ty;
+  p.normal_y = scale * tx;
 }
 
 void setNormals(LaserPoints& out, const LaserSweep& sweep) {
@@ -58,7 +60,7 @@ void setNormals(LaserPoints& out, const LaserSweep& sweep) {
     t.valid = t.near || cosine(t, tangents[k - 1]) > kStraight || cosine(t, tangents[k + 1]) > kStraight;
   }
   for (std::size_t i = sweep.begin; i < sweep.end; ++i)
-    setNormal(out.points[i], tangents[i - sweep.begin], tangents[i - sweep.begin + 1]);
+    setNormal(out.points[i], sweep.origin, tangents[i - sweep.begin], tangents[i - sweep.begin + 1]);
 }
 
 void append(LaserPoints& out, const CObservation2DRangeScan& scan, double max_range) {

@@ -137,7 +137,7 @@ ParticleFilter::Proposal ParticleFilter::proposal(const MatchResult& match, cons
   // and costs nothing along a corridor.
   const double volume =
       0.5 * std::log((match.information + prior.information).determinant() / prior.information.determinant());
-  return {match, -params_.likelihood_power * (match.cost + volume + extra_cost), by_odometry};
+  return {match, -params_.likelihood_power * (match.cost + volume) - extra_cost, by_odometry};
 }
 
 std::vector<ParticleFilter::Proposal> ParticleFilter::alternatives(const Particle& particle,
@@ -148,7 +148,7 @@ std::vector<ParticleFilter::Proposal> ParticleFilter::alternatives(const Particl
   // Odometry is believed, over the last step or, where it stalled and caught up, since it was right last. Who
   // has found it wrong pays for believing a leap.
   const bool leap = !particle.path.back().by_odometry && isSurprising(particle, prior);
-  modes.push_back(proposal(match, prior, leap ? params_.slip_cost : 0.0,
+  modes.push_back(proposal(match, prior, leap ? params_.surprise_cost : 0.0,
                            mahalanobis(match.pose, prior) <= params_.slip_beyond));
   if (const auto since = priorSinceAgreement(particle))
     modes.push_back(proposal(matcher_.match(particle.map, scan, *since), *since, 0, true));
@@ -171,7 +171,9 @@ void ParticleFilter::addSlips(std::vector<Proposal>& modes, const Particle& part
   const TPose2D &last = particle.path.back().pose, motion = lastIncrement(particle);
   const Eigen::Matrix3d information = motionInformation(params_.motion, motion) * params_.slip_information;
   // Wheels that slip go on slipping at no further cost.
-  const double cost = particle.path.back().by_odometry ? params_.slip_cost : 0.0;
+  const bool steady = odometry_since_ + 1 < odometry_.size() && !isSurprising(particle, prior);
+  const double first = steady ? params_.slip_cost : params_.surprise_cost;
+  const double cost = particle.path.back().by_odometry ? first : 0.0;
   const double fitting = params_.rescue_below * usualInlierShare(particle);
   // Odometry is given up only for a pose that explains the scan, not for one that is merely less bad.
   const auto add = [&](const PosePrior& wide, const TPose2D& start) {

@@ -55,6 +55,7 @@ ScanMatcher::ScanMatcher(const MatcherParams& params, double search_radius) : pa
 ScanMatcher::Evaluation ScanMatcher::evaluate(const SurfelMap& map, const LaserPoints& scan,
                                               const TPose2D& pose, double softness) const {
   const double c = std::cos(pose.phi), s = std::sin(pose.phi);
+  const auto cf = static_cast<float>(c), sf = static_cast<float>(s);
   const double inverse_sigma = 1.0 / (softness * params_.line_sigma);
   const double c2 = params_.cauchy_scale * params_.cauchy_scale, inverse_c2 = 1.0 / c2;
   const double max_inlier_r2 = kInlierSigmas * kInlierSigmas / (softness * softness);
@@ -66,7 +67,8 @@ ScanMatcher::Evaluation ScanMatcher::evaluate(const SurfelMap& map, const LaserP
     const double rx = c * px - s * py, ry = s * px + c * py;  // beam turned into the map frame
     const double x = pose.x + rx, y = pose.y + ry;
     const Surfel* surfel = map.nearest(x, y);
-    if (!surfel) {
+    const float normal_x = cf * p.normal_x - sf * p.normal_y, normal_y = sf * p.normal_x + cf * p.normal_y;
+    if (!surfel || surfel->facesAwayFrom(normal_x, normal_y)) {
       ++unmatched;
       continue;
     }

@@ -28,6 +28,12 @@ struct Moments {
   }
 };
 
+/** Two faces of a thin wall, which one line through both would blur. */
+bool areOppositeFaces(const Surfel& a, const Surfel& b) {
+  constexpr float kOpposite = -0.2f;
+  return a.facing_x * b.facing_x + a.facing_y * b.facing_y < kOpposite * a.hits * b.hits;
+}
+
 }  // namespace
 
 SurfelMap::SurfelMap(const SurfelMapParams& params)
@@ -79,12 +85,13 @@ void SurfelMap::growTo(int tx, int ty) {
 
 void SurfelMap::insert(const LaserPoints& scan, const mrpt::math::TPose2D& T_s_robot) {
   const double c = std::cos(T_s_robot.phi), s = std::sin(T_s_robot.phi);
-  const double cos2 = c * c - s * s, sin2 = 2 * c * s;
+  const auto cf = static_cast<float>(c), sf = static_cast<float>(s);
   ++insertion_;
   changed_.clear();
   for (const auto& p : scan.points) {
     const double px = static_cast<double>(p.x), py = static_cast<double>(p.y);
-    addEndpoint(p, T_s_robot.x + c * px - s * py, T_s_robot.y + s * px + c * py, cos2, sin2);
+    addEndpoint(T_s_robot.x + c * px - s * py, T_s_robot.y + s * px + c * py,
+                cf * p.normal_x - sf * p.normal_y, sf * p.normal_x + cf * p.normal_y);
   }
   for (const uint32_t surfel : changed_)
     for (const uint32_t affected : links_[surfel]) {
@@ -94,7 +101,7 @@ void SurfelMap::insert(const LaserPoints& scan, const mrpt::math::TPose2D& T_s_r
     }
 }
 
-void SurfelMap::addEndpoint(const LaserPoint& local, double x, double y, double cos2_pose, double sin2_pose) {
+void SurfelMap::addEndpoint(double x, double y, float normal_x, float normal_y) {
   const int cx = cellOf(x), cy = cellOf(y);
   Cell& cell = writableCell(cx, cy);
   const bool is_new = cell.own == kNone;
@@ -114,10 +121,13 @@ void SurfelMap::addEndpoint(const LaserPoint& local, double x, double y, double 
   surfel.hits += 1;
   surfel.x += (static_cast<float>(x) - surfel.x) / surfel.hits;
   surfel.y += (static_cast<float>(y) - surfel.y) / surfel.hits;
-  // A normal's double angle turns with twice the heading.
-  const auto c2 = static_cast<float>(cos2_pose), s2 = static_cast<float>(sin2_pose);
-  surfel.cos2 += c2 * local.normal_cos2 - s2 * local.normal_sin2;
-  surfel.sin2 += s2 * local.normal_cos2 + c2 * local.normal_sin2;
+  const float norm2 = normal_x * normal_x + normal_y * normal_y;
+  if (norm2 > 0) {
+    surfel.cos2 += (normal_x * normal_x - normal_y * normal_y) / norm2;
+    surfel.sin2 += 2 * normal_x * normal_y / norm2;
+  }
+  surfel.facing_x += normal_x;
+  surfel.facing_y += normal_y;
   changed_.push_back(index);
 }
 
@@ -151,7 +161,8 @@ void SurfelMap::fitLine(uint32_t index) {
   for (const uint32_t link : links_[index]) {
     const Surfel& other = surfels_[link];
     const double dx = static_cast<double>(other.x - surfel.x), dy = static_cast<double>(other.y - surfel.y);
-    if (dx * dx + dy * dy > params_.fit_radius * params_.fit_radius) continue;
+    const bool within = dx * dx + dy * dy <= params_.fit_radius * params_.fit_radius;
+    if (!within || areOppositeFaces(surfel, other)) continue;
     // Each endpoint counts the same: the noise of one wall spreads over two rows of cells, and weights that
     // favour the row with fewer endpoints would shift the line away from the wall.
     m.add(static_cast<double>(other.hits), dx, dy);

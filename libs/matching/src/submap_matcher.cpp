@@ -35,7 +35,10 @@ std::optional<SubmapMatch> SubmapMatcher::match(const PackedEvidence& other, con
                                                 const PoseWindow& window) const {
   const auto found = searchWindow(pyramid_, surface.sparse, window, params_.min_score, params_.rivals);
   if (!found) return std::nullopt;
-  const MatchResult refined = refine(surface, found->pose);
+  // The search takes the two faces of a thin wall for one; where the window's centre is a good guess it leads
+  // to the right one.
+  const MatchResult from_search = refine(surface, found->pose), from_centre = refine(surface, window.centre);
+  const MatchResult& refined = from_centre.cost < from_search.cost ? from_centre : from_search;
 
   SubmapMatch match;
   match.T_ref_other = refined.pose;

@@ -22,6 +22,11 @@ class Thinning {
   std::set<std::pair<int, int>> taken_;
 };
 
+/** With the normal of the side that was seen. */
+LaserPoint pointOn(const Surfel& surfel) {
+  return {surfel.x, surfel.y, surfel.facing_x / surfel.hits, surfel.facing_y / surfel.hits};
+}
+
 }  // namespace
 
 SurfelMap surfelMapOf(const GridSubmap& submap, const SurfelMapParams& params) {
@@ -42,7 +47,7 @@ SubmapSurface surfaceOf(const SurfelMap& map, const SurfaceParams& params) {
   for (const Surfel& surfel : map.surfels()) {
     if (surfel.hits < static_cast<float>(params.min_hits)) continue;
     const double x = static_cast<double>(surfel.x), y = static_cast<double>(surfel.y);
-    if (dense.passes(x, y)) surface.dense.points.push_back({surfel.x, surfel.y, 0, 0});
+    if (dense.passes(x, y)) surface.dense.points.push_back(pointOn(surfel));
     if (sparse.passes(x, y)) surface.sparse.push_back({x, y});
   }
   return surface;

@@ -11,9 +11,9 @@ namespace submap_slam {
 /** Endpoint of a beam in the robot frame. */
 struct LaserPoint {
   float x = 0, y = 0;  ///< m
-  float normal_cos2 = 0,
-        normal_sin2 =
-            0;  ///< (cos 2α, sin 2α) of the surface normal's direction α seen in the scan; (0, 0): unknown
+  /** Normal of the surface seen in the scan, on the side of the scanner; its length is the cosine of the
+   * angle of incidence, thus how sure that side is. (0, 0): unknown. */
+  float normal_x = 0, normal_y = 0;
 };
 
 /** The valid beams of one scanner: they all start at its position on the robot. */

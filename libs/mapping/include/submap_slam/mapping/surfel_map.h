@@ -22,11 +22,19 @@ struct SurfelMapParams {
 struct Surfel {
   enum class Kind : uint8_t { kPoint, kLine };
 
-  float x = 0, y = 0;        ///< mean of the endpoints: sub-cell position (m)
-  float cos2 = 0, sin2 = 0;  ///< sums of the double-angle scan normals
+  float x = 0, y = 0;                ///< mean of the endpoints: sub-cell position (m)
+  float cos2 = 0, sin2 = 0;          ///< sums of cos 2α, sin 2α of the scan normals' directions α
+  float facing_x = 0, facing_y = 0;  ///< sum of the scan normals (see LaserPoint): the side that was seen
   float hits = 0;
   float line_x = 0, line_y = 0, normal_x = 1, normal_y = 0;  ///< point on the line and its unit normal
   Kind kind = Kind::kPoint;
+
+  /** Whether this is the other side of what has that normal (see LaserPoint), as the two faces of a thin wall
+   * are. False in case of doubt. */
+  bool facesAwayFrom(float nx, float ny) const {
+    constexpr float kOpposite = -0.2f;
+    return facing_x * nx + facing_y * ny < kOpposite * hits;
+  }
 };
 
 /** The matching layer of a submap: a sparse map of surfels with, for each cell near a surface, its nearest
@@ -96,7 +104,7 @@ class SurfelMap {
   const Cell* cellAt(int cx, int cy) const;
   Cell& writableCell(int cx, int cy);
   void growTo(int tx, int ty);
-  void addEndpoint(const LaserPoint& local, double x, double y, double cos2_pose, double sin2_pose);
+  void addEndpoint(double x, double y, float normal_x, float normal_y);
   void claimNeighbourhood(uint32_t surfel, int cx, int cy);
   void linkNeighbours(uint32_t surfel, int cx, int cy);
   void fitLine(uint32_t surfel);
