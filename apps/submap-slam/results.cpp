@@ -13,7 +13,7 @@
 namespace submap_slam {
 
 void writeResults(const OutputDirectory& out, const GridSubmaps& submaps, const JoinedMap& joined) {
-  const Trajectory trajectory = trajectoryOf(submaps, joined.frames);
+  const Trajectory trajectory = trajectoryOf(submaps, joined);
   writeMapImage(out.file("map.png"), joined.map, trajectory, joined.frames);
   writeRosMap(out.file("map.yaml"), joined.map);
   writeGridMap(out.file("map.gridmap.gz"), joined.map);

@@ -132,6 +132,7 @@ JoinedMap GridGaussNewton::join(const GridSubmaps& submaps, const JoinedMap& ini
   JoinedMap joined;
   joined.frames = initial.frames;
   joined.constraints = initial.constraints;
+  joined.nodes = initial.nodes;
   if (submaps.size() < 2) {
     joined.status = JoinStatus::kNothingToJoin;
     joined.reason = "there is only one submap";

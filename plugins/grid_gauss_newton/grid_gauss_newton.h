@@ -37,7 +37,7 @@ class GridGaussNewton : public SubmapJoiner {
   int levels_ = 5, finest_level_ = 0, max_iterations_ = 40;
   double step_tolerance_ = 2e-4, turn_tolerance_ = 1e-5, cost_tolerance_ = 2e-4;
   double max_cells_ = 1e7;
-  double prior_weight_ = 1, correlation_length_ = 1, lattice_angle_ = 0.41;
+  double prior_weight_ = 10, correlation_length_ = 1, lattice_angle_ = 0.41;
 };
 
 }  // namespace submap_slam

@@ -2,11 +2,11 @@
 
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
-#include <ceres/solver.h>
 #include <mrpt/math/wrap2pi.h>
 
 #include "relative_pose.h"
 #include "residuals.h"
+#include "solver.h"
 
 namespace submap_slam::pose_graph {
 
@@ -22,15 +22,7 @@ void FrameGraph::optimise() {
                              link.loop ? &cauchy : nullptr, blocks[link.from].values, blocks[link.to].values);
   problem.SetParameterBlockConstant(blocks.front().values);
 
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  options.max_num_iterations = 50;
-  options.function_tolerance = 1e-7;
-  options.num_threads = 1;  // sums in a fixed order
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  if (!summary.IsSolutionUsable()) return;
+  if (!solve(problem)) return;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     frames[i] = blocks[i].pose();
     frames[i].phi = mrpt::math::wrapToPi(frames[i].phi);

@@ -12,7 +12,11 @@ namespace submap_slam::pose_graph {
 struct Link {
   std::size_t from = 0, to = 0;
   mrpt::math::TPose2D T_a_b;                                 ///< frame `to` seen from frame `from`
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< m², m·rad, rad²
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< how far it may be off: m², m·rad, rad²
+
+  /** Of its usual error, which is far smaller. The search has to reckon with the former; when all is found a
+   * robust estimate does better with the latter. */
+  Eigen::Matrix3d usual_covariance = Eigen::Matrix3d::Identity();
   bool loop = false;  ///< from loop closure: may be wrong, so it gets a robust loss
 };
 

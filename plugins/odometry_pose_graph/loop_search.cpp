@@ -24,6 +24,10 @@ using mrpt::math::TPose2D;
 /** Quantiles of χ² with 3 and 6 degrees of freedom that a true match stays below (0.999 and 0.9997). */
 constexpr double kChi2Alone = 16, kChi2Together = 25;
 
+Matrix3d variances(double sigma_xy, double sigma_phi) {
+  return Vector3d(sigma_xy * sigma_xy, sigma_xy * sigma_xy, sigma_phi * sigma_phi).asDiagonal();
+}
+
 /** Odometry's idea of T_s_end, if the log has odometry at both ends. */
 std::optional<TPose2D> odometryOfEnd(const GridSubmap& submap, const GridSubmap& next) {
   if (submap.nodes.empty() || next.nodes.empty()) return std::nullopt;
@@ -36,13 +40,16 @@ std::optional<TPose2D> odometryOfEnd(const GridSubmap& submap, const GridSubmap&
 Link chainLink(const GridSubmaps& submaps, std::size_t k, const LoopSearchParams& params) {
   const GridSubmap &submap = *submaps[k], &next = *submaps[k + 1];
   const ChainNoise& noise = params.chain;
-  Link link{k, k + 1, submap.end_pose.mean.asTPose(), submap.end_pose.cov.asEigen(), false};
+  const Matrix3d end = submap.end_pose.cov.asEigen();
+  Link link{k, k + 1, submap.end_pose.mean.asTPose(), end, end, false};
   if (!submap.has_successor) {
     const double xy = params.max_window, phi = params.max_window_phi;
     link.covariance.diagonal() += Vector3d(xy * xy, xy * xy, phi * phi);
+    link.usual_covariance = link.covariance;
     return link;
   }
   const double path = std::max(1.0, submap.pathLength());
+  link.usual_covariance += variances(noise.usual_xy_per_m, noise.usual_phi_per_m) * path;
   Vector3d variance(noise.sigma_xy_per_m * noise.sigma_xy_per_m * path, 0,
                     noise.sigma_phi_per_m * noise.sigma_phi_per_m * path);
   if (const auto odometry = odometryOfEnd(submap, next)) {
@@ -54,6 +61,14 @@ Link chainLink(const GridSubmaps& submaps, std::size_t k, const LoopSearchParams
   variance.y() = variance.x();
   link.covariance.diagonal() += variance;
   return link;
+}
+
+/** Of a match, by its information alone: the rest is for whoever believes it. */
+Matrix3d covarianceOf(const SubmapMatch& match) {
+  Matrix3d information = match.information;
+  information.diagonal().array() += 1;  // along a corridor: 1 m, 1 rad
+  // The information is of the map frame's axes; the relation's are those of T_ref too: no turn.
+  return information.inverse();
 }
 
 /** Where the robot was in a submap: a circle around its path, in the local map frame. */
@@ -120,7 +135,6 @@ class LoopSearch {
   void closeLoops(std::size_t k);
   std::vector<Task> tasksOf(std::size_t k, const FrameCovariances& covariances) const;
   std::string refusal(const Task& task, const SubmapMatch& match, const Matrix3d& match_covariance) const;
-  Matrix3d covarianceOf(const SubmapMatch& match) const;
   std::size_t list(std::size_t k, const Task& task, const Matrix3d& covariance, const std::string& refused);
   bool acceptVerified(std::size_t k, const FrameCovariances& covariances);
   bool agree(const Link& a, const Link& b, const FrameCovariances& covariances) const;
@@ -145,12 +159,14 @@ void LoopSearch::closeLoops(std::size_t k) {
   });
   for (const Task& task : tasks) {
     if (!task.match) continue;
-    const Matrix3d covariance = covarianceOf(*task.match);
+    const Matrix3d by_match = covarianceOf(*task.match);
+    const Matrix3d covariance = by_match + variances(params_.match_sigma_xy, params_.match_sigma_phi);
+    const Matrix3d usual = by_match + variances(params_.usual_match_xy, params_.usual_match_phi);
     const std::string refused = refusal(task, *task.match, covariance);
-    const std::size_t entry = list(k, task, covariance, refused);
+    const std::size_t entry = list(k, task, usual, refused);
     if (!refused.empty()) continue;
     pending_.push_back(
-        {{k, task.older, task.match->T_ref_other, covariance, true}, task.window.half_xy, entry});
+        {{k, task.older, task.match->T_ref_other, covariance, usual, true}, task.window.half_xy, entry});
   }
   if (acceptVerified(k, covariances)) result_.graph.optimise();
 }
@@ -175,16 +191,6 @@ std::vector<LoopSearch::Task> LoopSearch::tasksOf(std::size_t k, const FrameCova
     tasks.push_back({i, window, covariance, std::nullopt});
   }
   return tasks;
-}
-
-Matrix3d LoopSearch::covarianceOf(const SubmapMatch& match) const {
-  Matrix3d information = match.information;
-  information.diagonal().array() += 1;  // along a corridor: 1 m, 1 rad
-  // The information is of the map frame's axes; the relation's are those of T_ref too: no turn.
-  Matrix3d covariance = information.inverse();
-  const double xy = params_.match_sigma_xy, phi = params_.match_sigma_phi;
-  covariance.diagonal() += Vector3d(xy * xy, xy * xy, phi * phi);
-  return covariance;
 }
 
 std::string LoopSearch::refusal(const Task& task, const SubmapMatch& match,

@@ -11,13 +11,15 @@
 
 namespace submap_slam::pose_graph {
 
-/** How far the chain of end poses may be off, for the search. */
+/** How far the chain of end poses may be off. */
 struct ChainNoise {
-  double sigma_xy_per_m = 0.02;    ///< m per √m of path
-  double sigma_phi_per_m = 0.005;  ///< rad per √m of path
-  double odometry_share = 0.25;    ///< share of the difference between end pose and odometry
-  double max_xy = 2.0;             ///< m, cap of that share
-  double max_phi = 0.5;            ///< rad, cap of that share
+  double usual_xy_per_m = 0.002;    ///< m per √m of path, beside the covariance of the end pose
+  double usual_phi_per_m = 0.0007;  ///< rad per √m of path
+  double sigma_xy_per_m = 0.02;     ///< m per √m of path
+  double sigma_phi_per_m = 0.005;   ///< rad per √m of path
+  double odometry_share = 0.25;     ///< share of the difference between end pose and odometry
+  double max_xy = 2.0;              ///< m, cap of that share
+  double max_phi = 0.5;             ///< rad, cap of that share
 };
 
 struct LoopSearchParams {
@@ -31,11 +33,13 @@ struct LoopSearchParams {
   double sight = 10;            ///< m beyond their paths that two submaps may share something
   double min_hit_share = 0.3;
   double min_agreement = 0.75;
-  double rival_window = 1.0;      ///< m; in wider windows a rival makes a match ambiguous
-  double lone_window = 1.2;       ///< m; in wider windows a match needs another one that agrees
-  int witnesses_from = 6;         ///< submaps among which that one must be
-  double match_sigma_xy = 0.05;   ///< m, of a match beside what its information says
-  double match_sigma_phi = 0.01;  ///< rad
+  double rival_window = 1.0;       ///< m; in wider windows a rival makes a match ambiguous
+  double lone_window = 1.2;        ///< m; in wider windows a match needs another one that agrees
+  int witnesses_from = 6;          ///< submaps among which that one must be
+  double match_sigma_xy = 0.05;    ///< m, of a match beside what its information says
+  double match_sigma_phi = 0.01;   ///< rad
+  double usual_match_xy = 0.01;    ///< m, of a match beside what its information says, as it usually is
+  double usual_match_phi = 0.002;  ///< rad
 };
 
 /** The submap graph after the search, and every candidate with what became of it. */

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "frame_covariances.h"
 
@@ -12,7 +13,21 @@ IMPLEMENTS_MRPT_OBJECT(OdometryPoseGraph, SubmapJoiner, submap_slam)
 
 namespace {
 
-/** The chain as the graph has it: with what odometry says against the end poses in the covariance. */
+pose_graph::OdometryResidual residualOf(const std::string& name) {
+  using pose_graph::OdometryResidual;
+  return name == "off"      ? OdometryResidual::kOff
+         : name == "submap" ? OdometryResidual::kSubmap
+                            : OdometryResidual::kConsecutive;
+}
+
+std::string describeOdometry(const pose_graph::OdometryModel& odometry) {
+  if (!odometry.known()) return "no odometry to fuse";
+  return fmt::format("odometry strays {:.0f} mm and {:.2f} deg per root metre, scaled by {:.3f} and {:.3f}",
+                     1e3 * std::sqrt(odometry.variance_xy), std::sqrt(odometry.variance_phi) * 180 / M_PI,
+                     odometry.gain_xy, odometry.gain_phi);
+}
+
+/** The chain as the graph has it: end poses, with less weight where the rest contradicts them. */
 std::vector<Constraint> chainConstraints(const pose_graph::FrameGraph& graph, const GridSubmaps& submaps) {
   std::vector<Constraint> constraints;
   for (const auto& link : graph.links) {
@@ -32,13 +47,16 @@ std::vector<Constraint> chainConstraints(const pose_graph::FrameGraph& graph, co
 
 void OdometryPoseGraph::describe(ParameterTable& table) {
   using namespace pose_graph;
-  table.section(name(), "Loop closure and robust pose graph of the submap frames");
+  table.section(name(), "Loop closure and pose graph with fused odometry (Huang et al. 2024)");
   ChainNoise& chain = search_.chain;
   table.add("chain_sigma_xy", chain.sigma_xy_per_m, "m/√m", {0, 10},
             "How far the chain of submaps may drift beyond what the end poses say.");
   table.add("chain_sigma_phi", chain.sigma_phi_per_m, "rad/√m", {0, 1}, "The same for the heading.");
   table.add("chain_odometry_share", chain.odometry_share, "", {0, 10},
             "Share of the difference between end pose and odometry that counts as uncertainty.");
+  table.add("usual_chain_xy", chain.usual_xy_per_m, "m/√m", {0, 10},
+            "Usual drift of the chain beyond the covariance of the end poses, for the final estimate.");
+  table.add("usual_chain_phi", chain.usual_phi_per_m, "rad/√m", {0, 1}, "The same for the heading.");
   table.add("known", search_.known, "m", {0, 100},
             "Pairs of submaps whose relation is known better than that are not matched.");
   table.add("max_window", search_.max_window, "m", {0, 1000},
@@ -60,6 +78,19 @@ void OdometryPoseGraph::describe(ParameterTable& table) {
   table.add("match_sigma_xy", search_.match_sigma_xy, "m", {1e-4, 10},
             "Uncertainty of a match beside what its information says.");
   table.add("match_sigma_phi", search_.match_sigma_phi, "rad", {1e-5, 1}, "The same for the heading.");
+  table.add(
+      "odometry", odometry_,
+      "Odometry residuals: between consecutive nodes, between submap frame and node (the paper's), or none",
+      {"consecutive", "submap", "off"});
+  table.add("odometry_weight_xy", fusion_.odometry_weight_xy, "", {1e-6, 1e6},
+            "Factor on the weight that the log suggests for the translation of odometry.");
+  table.add("odometry_weight_phi", fusion_.odometry_weight_phi, "", {1e-6, 1e6}, "The same for the heading.");
+  table.add("node_distance", fusion_.node_distance, "m", {0.01, 100},
+            "Distance between nodes with a pose of their own in the graph.");
+  table.add("node_angle", fusion_.node_angle, "rad", {0.01, 7}, "The same for the heading; either suffices.");
+  table.add("intra_sigma_xy", fusion_.intra_sigma_xy, "m", {1e-5, 10},
+            "Uncertainty of a node's pose in its submap.");
+  table.add("intra_sigma_phi", fusion_.intra_sigma_phi, "rad", {1e-6, 1}, "The same for the heading.");
 }
 
 JoinedMap OdometryPoseGraph::join(const GridSubmaps& submaps, const JoinedMap& initial,
@@ -75,18 +106,23 @@ JoinedMap OdometryPoseGraph::join(const GridSubmaps& submaps, const JoinedMap& i
   }
   const auto report = [&](double share) { return !progress || progress(share, "closing loops"); };
   const LoopSearchResult found = searchLoops(submaps, search_, report);
-  joined.constraints = chainConstraints(found.graph, submaps);
+  FusionParams fusion = fusion_;
+  fusion.odometry = residualOf(odometry_);
+  const FusedGraph fused = fuseOdometry(submaps, found.graph, fusion);
+  joined.nodes = fused.nodes;
+  joined.constraints = chainConstraints(fused.frames, submaps);
   joined.constraints.insert(joined.constraints.end(), found.candidates.begin(), found.candidates.end());
-  const FrameCovariances covariances(found.graph);
+  const FrameCovariances covariances(fused.frames);
   for (std::size_t i = 0; i < joined.frames.size(); ++i) {
-    joined.frames[i].mean = mrpt::poses::CPose2D(found.graph.frames[i]);
+    joined.frames[i].mean = mrpt::poses::CPose2D(fused.frames.frames[i]);
     joined.frames[i].cov.asEigen() = covariances.block(i, i);
   }
   const auto accepted = std::count_if(found.candidates.begin(), found.candidates.end(),
                                       [](const Constraint& c) { return c.accepted; });
   joined.status = found.stopped ? JoinStatus::kIterationLimit : JoinStatus::kConverged;
-  joined.reason = fmt::format("{} of {} loop candidates accepted{}", accepted, found.candidates.size(),
-                              found.stopped ? ", stopped before the end" : "");
+  joined.reason =
+      fmt::format("{} of {} loop candidates accepted{}; {}", accepted, found.candidates.size(),
+                  found.stopped ? ", stopped before the end" : "", describeOdometry(fused.odometry));
   return joined;
 }
 

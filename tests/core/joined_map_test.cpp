@@ -122,6 +122,12 @@ TEST(ChainSubmaps, OneSubmapLiesAtTheOrigin) {
   EXPECT_TRUE(chain.constraints.empty());
 }
 
+JoinedMap withFrames(const std::vector<mrpt::poses::CPosePDFGaussian>& frames) {
+  JoinedMap joined;
+  joined.frames = frames;
+  return joined;
+}
+
 TEST(TrajectoryOf, PlacesTheNodesOfEverySubmap) {
   GridSubmaps submaps{emptySubmap(), emptySubmap()};
   SubmapNode node;
@@ -131,14 +137,28 @@ TEST(TrajectoryOf, PlacesTheNodesOfEverySubmap) {
   node.stamp = mrpt::Clock::fromDouble(101);
   node.pose = {0, 2, 0};
   submaps[1]->nodes = {node, node};
-  const Trajectory trajectory = trajectoryOf(submaps, {gaussian({0, 0, 0}), gaussian({5, 1, kQuarterTurn})});
+  const Trajectory trajectory =
+      trajectoryOf(submaps, withFrames({gaussian({0, 0, 0}), gaussian({5, 1, kQuarterTurn})}));
   ASSERT_EQ(trajectory.size(), 3u);
   EXPECT_NEAR(trajectory[0].pose.x, 1, 1e-12);
   EXPECT_NEAR(trajectory[0].pose.phi, 0.2, 1e-12);
   EXPECT_NEAR(trajectory[1].pose.x, 3, 1e-12);
   EXPECT_NEAR(trajectory[1].pose.y, 1, 1e-12);
   EXPECT_EQ(trajectory[2].stamp, mrpt::Clock::fromDouble(101));
-  EXPECT_THROW(trajectoryOf(submaps, {gaussian({0, 0, 0})}), std::invalid_argument);
+  EXPECT_THROW(trajectoryOf(submaps, withFrames({gaussian({0, 0, 0})})), std::invalid_argument);
+}
+
+TEST(TrajectoryOf, NodesThatAJoinerMovedAreWhereItPutThem) {
+  GridSubmaps submaps{emptySubmap()};
+  submaps[0]->nodes.resize(2);
+  JoinedMap joined = withFrames({gaussian({5, 1, kQuarterTurn})});
+  joined.nodes = {{{0, 0, 0}, {2, 0, 0.1}}};
+  const Trajectory trajectory = trajectoryOf(submaps, joined);
+  ASSERT_EQ(trajectory.size(), 2u);
+  EXPECT_NEAR(trajectory[1].pose.x, 5, 1e-12);
+  EXPECT_NEAR(trajectory[1].pose.y, 3, 1e-12);
+  joined.nodes[0].pop_back();
+  EXPECT_THROW(trajectoryOf(submaps, joined), std::invalid_argument);
 }
 
 TEST(OdometryOf, LeavesOutFramesWithoutOdometry) {

@@ -65,10 +65,10 @@ FrameGraph square() {
   graph.frames.push_back({});
   const TPose2D side(4, 0.1, M_PI / 2 + 0.02);
   for (std::size_t k = 0; k < 4; ++k) {
-    graph.links.push_back({k, k + 1, side, someCovariance(), false});
+    graph.links.push_back({k, k + 1, side, someCovariance(), someCovariance(), false});
     graph.frames.push_back(graph.frames.back() + side);
   }
-  graph.links.push_back({4, 0, {0.05, 0.02, 0.01}, 0.1 * someCovariance(), true});
+  graph.links.push_back({4, 0, {0.05, 0.02, 0.01}, 0.1 * someCovariance(), 0.1 * someCovariance(), true});
   return graph;
 }
 
@@ -98,7 +98,7 @@ TEST(FrameCovariances, AreThoseOfTheDenseInverse) {
 TEST(FrameCovariances, OfARelationSeenFromTheOtherEnd) {
   FrameGraph graph;
   graph.frames = {{}, kT};
-  graph.links.push_back({0, 1, kT, someCovariance(), false});
+  graph.links.push_back({0, 1, kT, someCovariance(), someCovariance(), false});
   const FrameCovariances covariances(graph);
   EXPECT_LT((covariances.relative({0, 1}) - someCovariance()).norm(), 1e-9);
   const RelationError back = relationError(kT, {}, TPose2D() - kT);
@@ -115,7 +115,7 @@ TEST(FrameGraph, ClosesTheLoopAndKeepsTheFirstFrame) {
 
 TEST(FrameGraph, AWrongLoopIsOutvoted) {
   FrameGraph right = square(), wrong = square();
-  wrong.links.push_back({3, 1, {50, -20, 2}, 0.01 * someCovariance(), true});
+  wrong.links.push_back({3, 1, {50, -20, 2}, 0.01 * someCovariance(), 0.01 * someCovariance(), true});
   right.optimise();
   wrong.optimise();
   for (std::size_t k = 0; k < right.frames.size(); ++k)
@@ -128,7 +128,7 @@ struct BentLoop {
   GridSubmaps submaps;
 
   explicit BentLoop(double turn) {
-    OdometryModel odometry;
+    submap_slam::OdometryModel odometry;
     World world = loopWorld();
     log = simulateRoute(world, 90, odometry, 5);
     StretchParams params;

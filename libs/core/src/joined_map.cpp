@@ -159,12 +159,19 @@ JoinedMap chainSubmaps(const GridSubmaps& submaps) {
   return chain;
 }
 
-Trajectory trajectoryOf(const GridSubmaps& submaps, const std::vector<CPosePDFGaussian>& frames) {
-  requireOneFrameEach(submaps, frames);
+Trajectory trajectoryOf(const GridSubmaps& submaps, const JoinedMap& joined) {
+  requireOneFrameEach(submaps, joined.frames);
+  const bool moved = !joined.nodes.empty();
+  if (moved && joined.nodes.size() != submaps.size())
+    throw std::invalid_argument("trajectoryOf: nodes of each submap are needed");
   Trajectory trajectory;
   for (std::size_t k = 0; k < submaps.size(); ++k) {
-    const TPose2D T_w_s = frames[k].mean.asTPose();
-    for (const SubmapNode& node : submaps[k]->nodes) trajectory.push_back({node.stamp, T_w_s + node.pose});
+    const auto& nodes = submaps[k]->nodes;
+    if (moved && joined.nodes[k].size() != nodes.size())
+      throw std::invalid_argument("trajectoryOf: one pose for each node is needed");
+    const TPose2D T_w_s = joined.frames[k].mean.asTPose();
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+      trajectory.push_back({nodes[n].stamp, T_w_s + (moved ? joined.nodes[k][n] : nodes[n].pose)});
   }
   return trajectory;
 }

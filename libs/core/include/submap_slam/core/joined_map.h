@@ -53,6 +53,10 @@ struct JoinedMap {
   /** T_w_s of each submap, in the order of the submaps; the first is fixed at the identity. */
   std::vector<mrpt::poses::CPosePDFGaussian> frames;
 
+  /** T_s_node of every node of every submap, if a joiner moved nodes inside their submaps; empty: they are where
+   * the submaps have them. */
+  std::vector<std::vector<mrpt::math::TPose2D>> nodes;
+
   EvidenceGrid map;  ///< global evidence in the global map frame
   double objective = 0;
   std::vector<JoinIteration> iterations;
@@ -64,8 +68,9 @@ struct JoinedMap {
  * predecessor's last pose. */
 JoinedMap chainSubmaps(const GridSubmaps& submaps);
 
-/** The pose T_w_robot of every node of every submap, in log order. */
-Trajectory trajectoryOf(const GridSubmaps& submaps, const std::vector<mrpt::poses::CPosePDFGaussian>& frames);
+/** The pose T_w_robot of every node of every submap, in log order. Throws std::invalid_argument if frames or
+ * nodes are not as many as those of the submaps. */
+Trajectory trajectoryOf(const GridSubmaps& submaps, const JoinedMap& joined);
 
 /** The pose by odometry, T_odom_robot, of every frame that has one, in the order of the frames. */
 Trajectory odometryOf(const std::vector<Frame>& frames);

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "frame_graph.h"
+#include "odometry_model.h"
+
+namespace submap_slam::pose_graph {
+
+/** Which odometry residuals the graph has. */
+enum class OdometryResidual {
+  kOff,
+  kSubmap,      ///< between submap frame and node (Huang et al. 2024, algorithm 1)
+  kConsecutive  ///< between consecutive nodes, also across the end of a submap: errors of odometry add up
+};
+
+struct FusionParams {
+  OdometryResidual odometry = OdometryResidual::kConsecutive;
+  double odometry_weight_xy = 1, odometry_weight_phi = 1;  ///< factors on the information the log suggests
+  double node_distance = 0.2;                              ///< m between nodes with a pose of their own
+  double node_angle = 0.15;                                ///< rad
+  double intra_sigma_xy = 0.005;                           ///< m, of a node in its submap
+  double intra_sigma_phi = 0.001;                          ///< rad
+};
+
+/** Nodes and submap frames, and all that is known of them. */
+struct FusedGraph {
+  FrameGraph frames;
+  OdometryModel odometry;
+
+  /** T_s_node of every node of every submap; empty without odometry residuals: nothing moves them then. */
+  std::vector<std::vector<mrpt::math::TPose2D>> nodes;
+};
+
+/** Minimises over submap frames and nodes
+ *
+ *     Σ ρ(intra-submap) + Σ ρ(inter-submap) + Σ ρ(odometry)
+ *
+ * with residuals Lᵀ e (see RelationError) and ρ(s) = log(1 + s) (Huang et al. 2024, eq. 12). Intra-submap: a
+ * node where it was matched in its submap, and the end pose, which is the next submap's frame. Inter-submap:
+ * the loops of the graph. Nodes between those with a pose of their own move along.
+ * @param found frames to start from, chain and loops; their usual covariances count. Those of the chain come
+ * back as far as the result bears them out: divided by ρ' there. */
+FusedGraph fuseOdometry(const GridSubmaps& submaps, FrameGraph found, const FusionParams& params,
+                        const OdometryModel& odometry);
+
+/** The same with the odometry model of the log. */
+FusedGraph fuseOdometry(const GridSubmaps& submaps, FrameGraph found, const FusionParams& params);
+
+}  // namespace submap_slam::pose_graph
