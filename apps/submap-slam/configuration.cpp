@@ -41,6 +41,7 @@ void describeJoiningParameters(ParameterTable& table, Configuration& config) {
       "map_resolution", config.joining.map_resolution, "m", {0, 10},
       "Cell size of the global map where a joiner leaves its making to the program; 0: that of the submaps, "
       "doubled until the map has at most 20 million cells");
+  table.add("landmark_joiner", config.joining.landmark_joiner, "Name of the joiner of landmark submaps");
   table.section("plugins", "Shared libraries with joiners");
   table.add("load", config.plugins, "Plugin files to load besides the installed ones, separated by commas");
   for (const auto& joiner : config.joiners) joiner->describe(table);
@@ -61,6 +62,23 @@ std::vector<std::string> pluginFiles(const std::string& ini_file, const Configur
   return files;
 }
 
+/** The joiner of a form of submaps by its name, checked. `key` is the one of [joining] that names it. */
+template <class Form>
+std::shared_ptr<Form> joinerNamed(const std::vector<std::shared_ptr<Joiner>>& joiners, const char* key,
+                                  const std::string& name) {
+  std::vector<std::string> names;
+  for (const auto& joiner : joiners) {
+    auto of_form = std::dynamic_pointer_cast<Form>(joiner);
+    if (!of_form) continue;
+    names.push_back(joiner->name());
+    if (joiner->name() != name) continue;
+    joiner->validate();
+    return of_form;
+  }
+  throw PluginError(fmt::format("[joining] {}: no plugin offers the joiner '{}'; available: {}", key, name,
+                                names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+}
+
 }  // namespace
 
 Configuration::Configuration(const std::vector<std::string>& plugin_files) {
@@ -75,19 +93,13 @@ Configuration::Configuration(const std::vector<std::string>& plugin_files) {
 
 JoinerChain Configuration::joinerChain() const {
   JoinerChain chain;
-  for (const auto& name : splitList(joining.chain)) {
-    const auto found =
-        std::find_if(joiners.begin(), joiners.end(), [&](const auto& j) { return j->name() == name; });
-    if (found == joiners.end()) {
-      std::vector<std::string> names;
-      for (const auto& joiner : joiners) names.push_back(joiner->name());
-      throw PluginError(fmt::format("[joining] chain: no plugin offers the joiner '{}'; available: {}", name,
-                                    names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
-    }
-    (*found)->validate();
-    chain.push_back(*found);
-  }
+  for (const auto& name : splitList(joining.chain))
+    chain.push_back(joinerNamed<SubmapJoiner>(joiners, "chain", name));
   return chain;
+}
+
+std::shared_ptr<LandmarkJoiner> Configuration::landmarkJoiner() const {
+  return joinerNamed<LandmarkJoiner>(joiners, "landmark_joiner", joining.landmark_joiner);
 }
 
 std::string Configuration::submapFingerprint() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <submap_slam/core/landmark_joiner.h>
 #include <submap_slam/core/parameters.h>
 #include <submap_slam/core/submap_joiner.h>
 #include <submap_slam/mapping/grid_mapper.h>
@@ -22,6 +23,7 @@ struct JoiningParams {
   std::string chain =
       "odometry_pose_graph, grid_gauss_newton";  ///< names of joiners, in the order in which they run
   double map_resolution = 0;                     ///< m per cell of the global map; 0: that of the submaps
+  std::string landmark_joiner = "eif_tree";      ///< name of the joiner of landmark submaps
 };
 
 /** Every parameter of a run, with one table that loads, checks, writes and documents them all. */
@@ -36,6 +38,9 @@ class Configuration {
    * and ConfigError if a joiner's parameters contradict each other. */
   JoinerChain joinerChain() const;
 
+  /** The joiner named in [joining] landmark_joiner; errors as above. */
+  std::shared_ptr<LandmarkJoiner> landmarkJoiner() const;
+
   /** Fingerprint of everything that the submaps depend on besides the log: parameters, seed and version. */
   std::string submapFingerprint() const;
 
@@ -44,9 +49,9 @@ class Configuration {
   GridMapperParams mapper;
   uint64_t seed = 1;
   JoiningParams joining;
-  std::string plugins;   ///< [plugins] load, files
-  JoinerChain joiners;   ///< all that are available, sorted by name
-  ParameterTable table;  ///< points into the members above and into the joiners
+  std::string plugins;                           ///< [plugins] load, files
+  std::vector<std::shared_ptr<Joiner>> joiners;  ///< all that are available, sorted by name
+  ParameterTable table;                          ///< points into the members above and into the joiners
 
  private:
   std::size_t submap_parameters_;  ///< the first ones of the table are those that the submaps depend on

@@ -1,7 +1,10 @@
+#include <submap_slam/rawlog/landmark_log.h>
+
 #include <memory>
 
 #include "commands.h"
 #include "configuration.h"
+#include "landmark_pipeline.h"
 #include "pipeline.h"
 #include "summary.h"
 
@@ -17,10 +20,10 @@ int runJoin(const JoinOptions& options) {
   const auto config = loadConfiguration(options.run.configuration);
   const auto limit = limitThreads(options.run.threads);
   Reporter reporter(options.run.quiet);
-
-  const RunSummary summary =
-      joinFile(options.submap_file, options.folder, options.run.overwrite, *config, reporter);
-  reporter.note(mapSummary(summary, options.folder));
+  const bool landmarks = holdsLandmarkSubmaps(options.submap_file);
+  const RunSummary summary = (landmarks ? joinLandmarkFile : joinFile)(
+      options.submap_file, options.folder, options.run.overwrite, *config, reporter);
+  reporter.note((landmarks ? landmarkSummary : mapSummary)(summary, options.folder));
   return exitCodeOf(summary);
 }
 
@@ -29,9 +32,11 @@ int runJoin(const JoinOptions& options) {
 void addJoinCommand(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<JoinOptions>();
   CLI::App* command = app.add_subcommand("join", "Joins a file of submaps and writes all results");
-  command->add_option("submaps", options->submap_file, "Submaps that `build` or `map` wrote")
+  command
+      ->add_option("submaps", options->submap_file,
+                   "Submaps that `build` or `map` wrote, or landmark submaps as rawlog or text (also .gz)")
       ->required()
-      ->type_name("SUBMAPS.rawlog");
+      ->type_name("SUBMAPS");
   command->add_option("-o,--output", options->folder, "Folder for the results; must be new or empty")
       ->required()
       ->type_name("OUTDIR");

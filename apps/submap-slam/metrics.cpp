@@ -1,5 +1,7 @@
 #include "metrics.h"
 
+#include <submap_slam/core/version.h>
+
 namespace submap_slam {
 
 void addLogMetrics(Metrics& metrics, const LogReport& report) {
@@ -24,6 +26,31 @@ void addJoinMetrics(Metrics& metrics, const GridSubmaps& submaps, const JoinedMa
   metrics["join_iterations"] = joined.iterations.size();
   metrics["constraints_accepted"] = accepted;
   metrics["constraints_rejected"] = rejected;
+}
+
+void addLandmarkMetrics(Metrics& metrics, const LandmarkSubmaps& submaps, const JoinedLandmarks& joined) {
+  metrics["submaps"] = submaps.size();
+  metrics["features"] = joined.associations.size();
+  metrics["landmarks"] = joined.landmarks.size();
+  metrics["objective"] = joined.objective;
+  metrics["join_status"] = toString(joined.status);
+  metrics["join_reason"] = joined.reason;
+  metrics["join_iterations"] = joined.iterations.size();
+  metrics["association"] = joined.association_known ? "known" : "unknown";
+  if (joined.association_known) return;
+  const AssociationErrors errors = compareWithIds(joined.associations);
+  metrics["association_wrong"] = errors.wrong;
+  metrics["association_missed"] = errors.missed;
+  metrics["features_dropped"] = errors.dropped;
+}
+
+void addRunMetrics(Metrics& metrics, uint64_t seed, const std::vector<std::string>& warnings,
+                   const StageTimer& timer) {
+  addTime(metrics, "", timer);
+  metrics["peak_memory_mb"] = peakMemoryMb();
+  metrics["seed"] = seed;
+  metrics["version"] = version();
+  metrics["warnings"] = warnings;
 }
 
 void addTime(Metrics& metrics, const std::string& prefix, const StageTimer& timer) {

@@ -1,11 +1,13 @@
 /** The figures of a run, for metrics.json. */
 #pragma once
 
-#include <submap_slam/core/joined_map.h>
+#include <submap_slam/core/joined_landmarks.h>
 #include <submap_slam/rawlog/log_report.h>
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "stage_timer.h"
 
@@ -19,6 +21,14 @@ void addLogMetrics(Metrics& metrics, const LogReport& report);
 /** frames, key_nodes, submaps, objective, join_status, join_reason, join_iterations, and of the loop closures
  * that were tried constraints_accepted and constraints_rejected */
 void addJoinMetrics(Metrics& metrics, const GridSubmaps& submaps, const JoinedMap& joined);
+
+/** submaps, features, landmarks, objective, join_status, join_reason, join_iterations, association; and where
+ * it ignored the ids, how it compares with them: association_wrong, association_missed, features_dropped */
+void addLandmarkMetrics(Metrics& metrics, const LandmarkSubmaps& submaps, const JoinedLandmarks& joined);
+
+/** What every run ends with: its times, peak_memory_mb, seed, version, warnings. */
+void addRunMetrics(Metrics& metrics, uint64_t seed, const std::vector<std::string>& warnings,
+                   const StageTimer& timer);
 
 /** `<prefix>wall_s` and `<prefix>cpu_s`: time since the timer was made. */
 void addTime(Metrics& metrics, const std::string& prefix, const StageTimer& timer);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <submap_slam/core/errors.h>
-#include <submap_slam/core/version.h>
 #include <submap_slam/mapping/grid_mapper.h>
 #include <submap_slam/output/json_file.h>
 #include <tbb/global_control.h>
@@ -40,16 +39,6 @@ void reportLog(const StretchSource& source, Reporter& reporter) {
       reporter.warning(finding.text);
     }
   }
-}
-
-/** Figures that every run ends with. */
-void addRunMetrics(Metrics& metrics, const Configuration& config, const Reporter& reporter,
-                   const StageTimer& timer) {
-  addTime(metrics, "", timer);
-  metrics["peak_memory_mb"] = peakMemoryMb();
-  metrics["seed"] = config.seed;
-  metrics["version"] = version();
-  metrics["warnings"] = reporter.warnings();
 }
 
 /** A map of nothing looks like a result; better to say why. */
@@ -107,7 +96,7 @@ RunSummary mapRawlog(const std::string& log, const std::string& folder, bool ove
 
   addLogMetrics(summary.metrics, source.report());
   joinAndWrite(readSubmaps(out.file(kSubmapFile)), joiners, out, config, reporter, summary);
-  addRunMetrics(summary.metrics, config, reporter, timer);
+  addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
   writeJson(out.file(kMetricsFile), summary.metrics);
   return summary;
 }
@@ -125,7 +114,7 @@ RunSummary buildRawlog(const std::string& log, const std::string& submap_file, b
   summary.damaged = !source.damage().empty();
   addLogMetrics(summary.metrics, source.report());
   summary.metrics["submaps"] = writer.state().submaps_done;
-  addRunMetrics(summary.metrics, config, reporter, timer);
+  addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
   return summary;
 }
 
@@ -139,7 +128,7 @@ RunSummary joinFile(const std::string& submap_file, const std::string& folder, b
   summary.damaged = !read.damage.empty();
   if (summary.damaged) reporter.warning(read.damage + "; the submaps before it are joined");
   joinAndWrite(read.submaps, joiners, out, config, reporter, summary);
-  addRunMetrics(summary.metrics, config, reporter, timer);
+  addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
   writeJson(out.file(kMetricsFile), summary.metrics);
   return summary;
 }

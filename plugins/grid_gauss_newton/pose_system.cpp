@@ -1,6 +1,7 @@
 #include "pose_system.h"
 
 #include <mrpt/math/wrap2pi.h>
+#include <submap_slam/sparse/selected_inverse.h>
 
 #include <Eigen/Sparse>
 #include <algorithm>
@@ -49,67 +50,9 @@ bool factorize(const Eigen::SparseMatrix<double>& matrix, Factorization& factori
   return factorization.info() == Eigen::Success && factorization.vectorD().minCoeff() > 0;
 }
 
-/** The entries of (L D Lᵀ)⁻¹ where L has some, from the last column to the first by Takahashi's equations:
- * the blocks of frames cost about as much as the factorization, where solving for all columns would be
- * quadratic. */
-class SelectedInverse {
- public:
-  explicit SelectedInverse(const Factorization& factorization);
-
-  /** In the order of the factorized matrix. */
-  double at(int row, int column) const;
-
- private:
-  void findColumn(int column, double inverse_of_d);
-
-  using Factor = Eigen::SparseMatrix<double>;
-  const Factor& l_;                       // strictly lower triangle
-  const Eigen::VectorXi& order_;          // row of the factor for each row of the matrix
-  std::vector<double> diagonal_, below_;  // `below_` has the entries of L
-  std::vector<double> sum_;               // of the column at work; 0 elsewhere
-  std::vector<double> entry_;             // of L in that column; 0 elsewhere
-};
-
-SelectedInverse::SelectedInverse(const Factorization& factorization)
-    : l_(factorization.matrixL().nestedExpression()), order_(factorization.permutationP().indices()) {
-  const auto n = static_cast<std::size_t>(l_.cols());
-  diagonal_.resize(n), sum_.resize(n), entry_.resize(n);
-  below_.resize(static_cast<std::size_t>(l_.nonZeros()));
-  const Eigen::VectorXd d = factorization.vectorD();
-  for (int column = static_cast<int>(n) - 1; column >= 0; --column) findColumn(column, 1 / d[column]);
-}
-
-/** Z_ij = −Σ_k Z_ik L_kj and Z_jj = 1/D_j − Σ_k Z_kj L_kj; all Z_ik that it asks for are entries of L. */
-void SelectedInverse::findColumn(int column, double inverse_of_d) {
-  const int *row = l_.innerIndexPtr(), *start = l_.outerIndexPtr();
-  const double* value = l_.valuePtr();
-  const auto at = [](auto& values, int i) -> auto& { return values[static_cast<std::size_t>(i)]; };
-  for (int e = start[column]; e < start[column + 1]; ++e) at(entry_, row[e]) = value[e];
-  for (int e = start[column]; e < start[column + 1]; ++e) {
-    const int k = row[e];
-    at(sum_, k) += at(diagonal_, k) * value[e];
-    for (int f = start[k]; f < start[k + 1]; ++f) {
-      at(sum_, row[f]) += at(below_, f) * value[e];
-      at(sum_, k) += at(below_, f) * at(entry_, row[f]);
-    }
-  }
-  at(diagonal_, column) = inverse_of_d;
-  for (int e = start[column]; e < start[column + 1]; ++e) {
-    at(below_, e) = -at(sum_, row[e]);
-    at(diagonal_, column) -= at(below_, e) * value[e];
-  }
-  for (int e = start[column]; e < start[column + 1]; ++e) {
-    for (int f = start[row[e]]; f < start[row[e] + 1]; ++f) at(sum_, row[f]) = 0;
-    at(sum_, row[e]) = at(entry_, row[e]) = 0;
-  }
-}
-
-double SelectedInverse::at(int row, int column) const {
-  const int low = std::max(order_[row], order_[column]), left = std::min(order_[row], order_[column]);
-  if (low == left) return diagonal_[static_cast<std::size_t>(low)];
-  const int *begin = l_.innerIndexPtr() + l_.outerIndexPtr()[left],
-            *end = l_.innerIndexPtr() + l_.outerIndexPtr()[left + 1];
-  return below_[static_cast<std::size_t>(std::lower_bound(begin, end, low) - l_.innerIndexPtr())];
+SparseFactor factorOf(const Factorization& factorization) {
+  return {factorization.matrixL().nestedExpression(), factorization.vectorD(),
+          factorization.permutationP().indices()};
 }
 
 }  // namespace
@@ -219,7 +162,7 @@ std::optional<std::vector<Eigen::Matrix3d>> marginalCovariances(const PoseSystem
   Factorization factorization;
   if (!factorize(lowerTriangle(system, rows, size, added), factorization)) return std::nullopt;
 
-  const SelectedInverse inverse(factorization);
+  const SelectedInverse inverse(factorOf(factorization));
   for (std::size_t i = 0; i < rows.size(); ++i)
     for (int c = 0; c < 3 && rows[i] >= 0; ++c)
       for (int d = 0; d < 3; ++d) covariances[i](c, d) = inverse.at(rows[i] + c, rows[i] + d);

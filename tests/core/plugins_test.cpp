@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <submap_slam/core/errors.h>
+#include <submap_slam/core/landmark_joiner.h>
 #include <submap_slam/core/plugins.h>
+#include <submap_slam/core/submap_joiner.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -23,9 +25,10 @@ std::string refusal(const std::string& file) {
   return {};
 }
 
-std::shared_ptr<SubmapJoiner> joinerNamed(const std::string& name) {
+template <class Form = SubmapJoiner>
+std::shared_ptr<Form> joinerNamed(const std::string& name) {
   for (const auto& joiner : availableJoiners())
-    if (joiner->name() == name) return joiner;
+    if (joiner->name() == name) return std::dynamic_pointer_cast<Form>(joiner);
   return nullptr;
 }
 
@@ -38,6 +41,15 @@ TEST(Plugins, ALoadedJoinerCanBeListedConfiguredAndRun) {
   table.set("sample.weight=0.75");
   EXPECT_EQ(joiner->join({}, {}, {}).objective, 0.75);
   EXPECT_EQ(joinerNamed("sample")->join({}, {}, {}).objective, 0.25) << "every object has its own parameters";
+}
+
+TEST(Plugins, APluginMayJoinSubmapsOfBothForms) {
+  loadPlugin(SAMPLE_JOINER);
+  const auto joiner = joinerNamed<LandmarkJoiner>("sample_landmarks");
+  ASSERT_TRUE(joiner);
+  EXPECT_FALSE(joinerNamed<SubmapJoiner>("sample_landmarks"));
+  EXPECT_FALSE(joinerNamed<LandmarkJoiner>("sample"));
+  EXPECT_EQ(joiner->join({LandmarkSubmap::Create()}, {}).frames.size(), 2u);
 }
 
 TEST(Plugins, LoadingTwiceIsHarmless) {

@@ -1,4 +1,5 @@
-// A joiner plugin for the tests of the loader.
+// A plugin with a joiner of each form for the tests of the loader.
+#include <submap_slam/core/landmark_joiner.h>
 #include <submap_slam/core/submap_joiner.h>
 
 namespace sample {
@@ -26,8 +27,26 @@ class SampleJoiner : public submap_slam::SubmapJoiner {
   double weight_ = 0.25;
 };
 
+/** Puts every submap at the origin. */
+class SampleLandmarkJoiner : public submap_slam::LandmarkJoiner {
+  DEFINE_MRPT_OBJECT(SampleLandmarkJoiner, sample)
+
+ public:
+  std::string name() const override { return "sample_landmarks"; }
+  std::string description() const override { return "joins no landmarks"; }
+  void describe(submap_slam::ParameterTable& table) override { table.section(name(), "Sample"); }
+  submap_slam::JoinedLandmarks join(const submap_slam::LandmarkSubmaps& submaps,
+                                    const submap_slam::ProgressCallback& /*progress*/) const override {
+    submap_slam::JoinedLandmarks joined;
+    joined.frames.resize(submaps.size() + 1);
+    return joined;
+  }
+};
+
 }  // namespace sample
 
 IMPLEMENTS_MRPT_OBJECT(SampleJoiner, submap_slam::SubmapJoiner, sample)
+IMPLEMENTS_MRPT_OBJECT(SampleLandmarkJoiner, submap_slam::LandmarkJoiner, sample)
 SUBMAP_SLAM_REGISTER_JOINER(registerSampleJoiner, sample::SampleJoiner)
+SUBMAP_SLAM_REGISTER_JOINER(registerSampleLandmarkJoiner, sample::SampleLandmarkJoiner)
 SUBMAP_SLAM_PLUGIN()

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <submap_slam/core/errors.h>
 #include <submap_slam/core/plugins.h>
+#include <submap_slam/core/submap_joiner.h>
 #include <tbb/global_control.h>
 
 #include <Eigen/Eigenvalues>
@@ -27,7 +28,8 @@ class GridGaussNewtonPlugin : public ::testing::Test {
   void SetUp() override {
     loadPlugin(GRID_GAUSS_NEWTON_PLUGIN);
     for (const auto& candidate : availableJoiners())
-      if (candidate->name() == "grid_gauss_newton") joiner = candidate;
+      if (candidate->name() == "grid_gauss_newton")
+        joiner = std::dynamic_pointer_cast<SubmapJoiner>(candidate);
     ASSERT_TRUE(joiner);
     joiner->describe(parameters);
     // The synthetic submaps have coarse cells and honest covariances.

@@ -51,11 +51,11 @@ void loadPluginFolder(const std::string& folder) {
   for (const auto& file : files) loadPlugin(file);
 }
 
-std::vector<std::shared_ptr<SubmapJoiner>> availableJoiners() {
-  std::vector<std::shared_ptr<SubmapJoiner>> joiners;
-  for (const auto* id : mrpt::rtti::getAllRegisteredClassesChildrenOf(CLASS_ID(SubmapJoiner))) {
+std::vector<std::shared_ptr<Joiner>> availableJoiners() {
+  std::vector<std::shared_ptr<Joiner>> joiners;
+  for (const auto* id : mrpt::rtti::getAllRegisteredClassesChildrenOf(CLASS_ID(Joiner))) {
     if (!id->ptrCreateObject) continue;  // an abstract base
-    auto joiner = std::dynamic_pointer_cast<SubmapJoiner>(id->createObject());
+    auto joiner = std::dynamic_pointer_cast<Joiner>(id->createObject());
     if (joiner) joiners.push_back(std::move(joiner));
   }
   std::sort(joiners.begin(), joiners.end(),

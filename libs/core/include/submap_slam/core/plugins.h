@@ -1,6 +1,6 @@
 #pragma once
 
-#include <submap_slam/core/submap_joiner.h>
+#include <submap_slam/core/joiner.h>
 
 #include <memory>
 #include <string>
@@ -15,7 +15,7 @@ void loadPlugin(const std::string& file);
 /** Loads every *.so of a folder in alphabetical order; a folder that does not exist holds none. */
 void loadPluginFolder(const std::string& folder);
 
-/** One new object of each joiner class that is registered, sorted by name. */
-std::vector<std::shared_ptr<SubmapJoiner>> availableJoiners();
+/** One new object of each joiner class that is registered, for submaps of either form, sorted by name. */
+std::vector<std::shared_ptr<Joiner>> availableJoiners();
 
 }  // namespace submap_slam

@@ -1,3 +1,0 @@
-#include <submap_slam/core/submap_joiner.h>
-
-IMPLEMENTS_VIRTUAL_MRPT_OBJECT(SubmapJoiner, mrpt::rtti::CObject, submap_slam)

@@ -1,0 +1,26 @@
+/** Files of a map of landmarks. All functions throw OutputError. */
+#pragma once
+
+#include <submap_slam/core/joined_landmarks.h>
+
+#include <string>
+
+namespace submap_slam {
+
+/** Writes `id,x,y,sxx,sxy,syy,hits` for each landmark, in the global map frame: position (m), its covariance
+ * (m²), observations. Numbers read back to the same bits. */
+void writeLandmarks(const std::string& file, const std::vector<JoinedLandmark>& landmarks);
+
+/** Writes `submap,feature,kind,landmark,distance2` for each feature of each submap, see FeatureAssociation.
+ */
+void writeAssociations(const std::string& file, const std::vector<FeatureAssociation>& associations);
+
+/** Writes an mrpt::opengl::COpenGLScene (`.3Dscene`): landmarks and submap frames with 3-sigma ellipses, and
+ * the line through the frames. */
+void writeLandmarkScene(const std::string& file, const JoinedLandmarks& joined);
+
+/** The end pose of each submap with its stamp; where the submaps have none, their positions in the sequence
+ * stand for seconds. */
+Trajectory endPoses(const LandmarkSubmaps& submaps, const JoinedLandmarks& joined);
+
+}  // namespace submap_slam

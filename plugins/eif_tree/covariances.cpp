@@ -1,0 +1,33 @@
+#include "covariances.h"
+
+namespace submap_slam::landmark_joining {
+namespace {
+
+template <int Size>
+Eigen::Matrix<double, Size, Size> blockAt(const SelectedInverse& inverse, int row) {
+  Eigen::Matrix<double, Size, Size> block;
+  for (int c = 0; c < Size; ++c)
+    for (int r = 0; r < Size; ++r) block(r, c) = inverse.at(row + r, row + c);
+  return block;
+}
+
+}  // namespace
+
+Covariances marginalCovariances(const JointProblem& problem, const InformationForm& form) {
+  const SelectedInverse inverse(form.cholesky().factor());
+  Covariances covariances;
+  for (std::size_t k = 0; k < problem.submaps(); ++k)
+    covariances.ends.push_back(blockAt<3>(inverse, form.pattern().poseRow(k)));
+  for (std::size_t m = 0; m < problem.landmark_count; ++m)
+    covariances.landmarks.push_back(blockAt<2>(inverse, form.pattern().landmarkRow(m)));
+  return covariances;
+}
+
+Eigen::MatrixXd covarianceOf(InformationForm& form, const std::vector<int>& rows) {
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(form.pattern().size(), count);
+  for (Eigen::Index i = 0; i < count; ++i) unit(rows[static_cast<std::size_t>(i)], i) = 1;
+  return form.cholesky().solve(unit)(rows, Eigen::all);
+}
+
+}  // namespace submap_slam::landmark_joining

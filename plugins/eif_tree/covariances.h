@@ -1,0 +1,25 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "information_form.h"
+
+namespace submap_slam::landmark_joining {
+
+/** Marginal covariances of the end poses and the landmarks. */
+struct Covariances {
+  std::vector<Eigen::Matrix3d> ends;
+  std::vector<Eigen::Matrix2d> landmarks;
+};
+
+/** The diagonal blocks of I⁻¹ by Takahashi's equations; after InformationForm::factorize() only. */
+Covariances marginalCovariances(const JointProblem& problem, const InformationForm& form);
+
+/** The covariance of some rows of the state (rows of I, see BlockPattern): the columns I⁻¹ e of these rows
+ * are solved for and their rows kept, never the whole inverse (Huang, Wang, Dissanayake 2008, recovery of the
+ * covariance). */
+Eigen::MatrixXd covarianceOf(InformationForm& form, const std::vector<int>& rows);
+
+}  // namespace submap_slam::landmark_joining

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <submap_slam/core/landmark_joiner.h>
+
+#include <string>
+
+#include "gauss_newton.h"
+#include "known_association.h"
+
+namespace submap_slam {
+
+/** Joins landmark submaps in sparse information form: by a binary tree, or one after the other, with a final
+ * Gauss-Newton over the original submaps (Combined SLAM; Sparse Local Submap Joining Filter, Huang, Wang,
+ * Dissanayake 2008).
+ */
+class EifTree : public LandmarkJoiner {
+  DEFINE_MRPT_OBJECT(EifTree, submap_slam)
+
+ public:
+  std::string name() const override { return "eif_tree"; }
+  std::string description() const override {
+    return "sparse information filter over landmark submaps, by a binary tree or sequentially";
+  }
+  void describe(ParameterTable& table) override;
+
+  JoinedLandmarks join(const LandmarkSubmaps& submaps, const ProgressCallback& progress) const override;
+
+ private:
+  std::string method_ = "tree_gn";
+  int steps_per_join_ = 1;
+  landmark_joining::GaussNewtonOptions gauss_newton_;
+};
+
+}  // namespace submap_slam
