@@ -4,8 +4,7 @@
 
 #include <string>
 
-#include "gauss_newton.h"
-#include "known_association.h"
+#include "joining.h"
 
 namespace submap_slam {
 
@@ -26,9 +25,10 @@ class EifTree : public LandmarkJoiner {
   JoinedLandmarks join(const LandmarkSubmaps& submaps, const ProgressCallback& progress) const override;
 
  private:
+  landmark_joining::JoiningOptions joiningOptions() const;
+
   std::string method_ = "tree_gn";
-  int steps_per_join_ = 1;
-  landmark_joining::GaussNewtonOptions gauss_newton_;
+  landmark_joining::JoiningOptions options_;
 };
 
 }  // namespace submap_slam
