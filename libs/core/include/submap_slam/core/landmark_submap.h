@@ -31,6 +31,9 @@ class LandmarkSubmap : public mrpt::obs::CObservation, public mrpt::opengl::Visu
   DEFINE_SERIALIZABLE(LandmarkSubmap, submap_slam)
 
  public:
+  /** MRPT would stamp it with the present time. */
+  LandmarkSubmap() { timestamp = INVALID_TIMESTAMP; }
+
   uint32_t id = 0;  ///< position in the sequence, from 0
 
   /** When the robot was at `end_pose`; INVALID_TIMESTAMP if that is not known. */

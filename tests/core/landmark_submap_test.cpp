@@ -1,0 +1,127 @@
+#include <gmock/gmock.h>
+#include <mrpt/io/CMemoryStream.h>
+#include <mrpt/opengl/CSetOfObjects.h>
+#include <mrpt/serialization/CArchive.h>
+#include <submap_slam/core/errors.h>
+#include <submap_slam/core/joined_landmarks.h>
+
+#include <limits>
+#include <sstream>
+
+namespace submap_slam {
+namespace {
+
+using ::testing::HasSubstr;
+
+/** Two features, all variances 0.01 and one covariance. */
+LandmarkSubmap twoFeatures() {
+  LandmarkSubmap submap;
+  submap.id = 4;
+  submap.end_stamp = mrpt::Clock::fromDouble(12.5);
+  submap.end_pose = {1.5, -0.25, 0.125};
+  submap.features = {{7, 3, 4, 11}, {9, -1, 2, 5}};
+  submap.covariance.setIdentity(7);
+  submap.covariance *= 0.01;
+  submap.covariance(4, 0) = submap.covariance(0, 4) = 0.002;
+  return submap;
+}
+
+std::string refusal(const LandmarkSubmap& submap) {
+  try {
+    requireUsable(submap);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "no InputError";
+  return {};
+}
+
+TEST(LandmarkSubmap, IsReadBackAsItWasWritten) {
+  const LandmarkSubmap written = twoFeatures();
+  mrpt::io::CMemoryStream memory;
+  auto archive = mrpt::serialization::archiveFrom(memory);
+  archive << written;
+  memory.Seek(0);
+  const auto read = archive.ReadObject<LandmarkSubmap>();
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->id, 4u);
+  EXPECT_EQ(read->end_stamp, written.end_stamp);
+  EXPECT_EQ(read->end_pose, written.end_pose);
+  ASSERT_EQ(read->features.size(), 2u);
+  EXPECT_EQ(read->features[1].id, 9u);
+  EXPECT_EQ(read->features[1].y, 2);
+  EXPECT_EQ(read->features[0].hits, 11u);
+  EXPECT_EQ(read->covariance, written.covariance);
+}
+
+TEST(LandmarkSubmap, WithACovarianceOfTheWrongSizeIsNotWritten) {
+  LandmarkSubmap submap = twoFeatures();
+  submap.covariance.setIdentity(5);
+  mrpt::io::CMemoryStream memory;
+  auto archive = mrpt::serialization::archiveFrom(memory);
+  EXPECT_THROW(archive << submap, std::exception);
+}
+
+TEST(LandmarkSubmap, DescribesAndShowsItself) {
+  const LandmarkSubmap submap = twoFeatures();
+  EXPECT_DOUBLE_EQ(submap.radius(), 5);
+  std::ostringstream text;
+  submap.getDescriptionAsText(text);
+  EXPECT_THAT(text.str(), HasSubstr("Landmark submap 4"));
+  EXPECT_THAT(text.str(), HasSubstr("2 within 5.0 m"));
+  mrpt::opengl::CSetOfObjects view;
+  submap.getVisualizationInto(view);
+  EXPECT_EQ(view.size(), 6u) << "path, ellipse of the end pose, two of features, two corners";
+}
+
+TEST(LandmarkSubmap, OfARobotThatStoodStillIsUsableByTheFloor) {
+  LandmarkSubmap submap = twoFeatures();
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 7; ++j) submap.covariance(i, j) = submap.covariance(j, i) = 0;
+  EXPECT_NO_THROW(requireUsable(submap));
+  const auto floored = flooredCovariance(submap);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(floored(i, i), kLeastPoseVariance);
+  EXPECT_EQ(floored(3, 3), 0.01);
+}
+
+TEST(LandmarkSubmap, WithoutFeaturesIsUsable) {
+  LandmarkSubmap submap;
+  submap.covariance.setIdentity(3);
+  EXPECT_NO_THROW(requireUsable(submap));
+}
+
+TEST(LandmarkSubmap, ThatMakesNoSenseIsRefusedWithTheReason) {
+  LandmarkSubmap submap = twoFeatures();
+  submap.features[1].id = 7;
+  EXPECT_THAT(refusal(submap), HasSubstr("feature 7 is there twice"));
+  submap = twoFeatures();
+  submap.features[0].x = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(refusal(submap), HasSubstr("not finite"));
+  submap = twoFeatures();
+  submap.covariance(3, 3) = -0.01;
+  EXPECT_THAT(refusal(submap), HasSubstr("negative variance"));
+  submap = twoFeatures();
+  submap.covariance(4, 0) = submap.covariance(0, 4) = 0.02;  // a correlation of 2
+  EXPECT_THAT(refusal(submap), HasSubstr("not positive definite"));
+  submap = twoFeatures();
+  submap.covariance(4, 0) = 0.001;
+  EXPECT_THAT(refusal(submap), HasSubstr("not symmetric"));
+  submap = twoFeatures();
+  submap.covariance.setIdentity(5);
+  EXPECT_THAT(refusal(submap), HasSubstr("5 x 5, expected 7 x 7"));
+}
+
+TEST(AssociationErrors, CountWrongAndMissedMatches) {
+  using Kind = FeatureAssociation::Kind;
+  // Landmark 1 holds id 10 twice and once id 11; landmark 2 is id 10 again; landmark 3 is id 12.
+  const std::vector<FeatureAssociation> associations{
+      {0, 10, Kind::kNew, 1, 0},  {1, 10, Kind::kMatched, 1, 1}, {1, 11, Kind::kMatched, 1, 4},
+      {2, 10, Kind::kNew, 2, 20}, {2, 12, Kind::kNew, 3, 90},    {3, 12, Kind::kDropped, 0, 10}};
+  const AssociationErrors errors = compareWithIds(associations);
+  EXPECT_EQ(errors.wrong, 1u);
+  EXPECT_EQ(errors.missed, 1u);
+  EXPECT_EQ(errors.dropped, 1u);
+}
+
+}  // namespace
+}  // namespace submap_slam
