@@ -14,10 +14,22 @@ namespace {
 struct JoinOptions {
   RunOptions run;
   std::string submap_file, folder;
+  bool unknown_association = false;
 };
+
+/** Lets the landmark joiner ignore the ids, unless the configuration says already how. */
+void ignoreIds(Configuration& config) {
+  for (const auto& parameter : config.table.parameters())
+    if (parameter.section == config.joining.landmark_joiner && parameter.key == "association" &&
+        parameter.value() == "known") {
+      config.table.set(parameter.section, parameter.key, "jcbb");
+      return;
+    }
+}
 
 int runJoin(const JoinOptions& options) {
   const auto config = loadConfiguration(options.run.configuration);
+  if (options.unknown_association) ignoreIds(*config);
   const auto limit = limitThreads(options.run.threads);
   Reporter reporter(options.run.quiet);
   const bool landmarks = holdsLandmarkSubmaps(options.submap_file);
@@ -40,6 +52,8 @@ void addJoinCommand(CLI::App& app, int& exit_code) {
   command->add_option("-o,--output", options->folder, "Folder for the results; must be new or empty")
       ->required()
       ->type_name("OUTDIR");
+  command->add_flag("--unknown-association", options->unknown_association,
+                    "Landmark submaps: match by position, ignore the ids of the file");
   addConfigurationOptions(*command, options->run.configuration);
   addRunOptions(*command, options->run);
   command->footer(

@@ -2,7 +2,7 @@
 
 #include <mrpt/math/wrap2pi.h>
 
-#include "known_association.h"
+#include <submap_slam/core/errors.h>
 
 namespace submap_slam {
 
@@ -17,7 +17,13 @@ mrpt::poses::CPosePDFGaussian frameOf(const Pose& pose, const Eigen::Matrix3d& c
           mrpt::math::CMatrixDouble33(covariance)};
 }
 
-void fillIn(const AssociatedProblem& associated, const Joining& joining, JoinedLandmarks& joined) {
+JoinedLandmarks resultOf(const AssociatedProblem& associated, const Joining& joining) {
+  JoinedLandmarks joined;
+  joined.status = joining.result.status;
+  joined.reason = joining.result.reason;
+  joined.objective = joining.result.objective;
+  joined.iterations = joining.result.iterations;
+  joined.associations = associated.associations;
   const auto& [state, covariances, result] = joining;
   joined.frames = {frameOf(Pose::Zero(), Eigen::Matrix3d::Zero())};
   for (std::size_t k = 0; k < state.ends.size(); ++k)
@@ -25,6 +31,18 @@ void fillIn(const AssociatedProblem& associated, const Joining& joining, JoinedL
   for (std::size_t m = 0; m < state.landmarks.size(); ++m)
     joined.landmarks.push_back({associated.landmark_ids[m], state.landmarks[m].x(), state.landmarks[m].y(),
                                 mrpt::math::CMatrixDouble22(covariances.landmarks[m]), associated.hits[m]});
+  return joined;
+}
+
+/** Frames where nothing else is known: end poses one after the other. */
+std::vector<mrpt::poses::CPosePDFGaussian> chainedFrames(const LandmarkSubmaps& submaps) {
+  Pose pose = Pose::Zero();
+  std::vector<mrpt::poses::CPosePDFGaussian> frames{frameOf(pose, Eigen::Matrix3d::Zero())};
+  for (const auto& submap : submaps) {
+    pose = compose(pose, Pose(submap->end_pose.x, submap->end_pose.y, submap->end_pose.phi));
+    frames.push_back(frameOf(pose, Eigen::Matrix3d::Zero()));
+  }
+  return frames;
 }
 
 }  // namespace
@@ -46,6 +64,25 @@ void EifTree::describe(ParameterTable& table) {
   table.add("step_tolerance", options_.gauss_newton.max_step_m, "m", {0, 1},
             "Converged when no position changes more and no heading more than turn_tolerance.");
   table.add("turn_tolerance", options_.gauss_newton.max_step_rad, "rad", {0, 1}, "See step_tolerance.");
+  table.add("association", association_,
+            "How features of different submaps are matched: by the ids that they have, or without looking at "
+            "these by "
+            "position: nearest neighbours, or joint compatibility branch and bound.",
+            {"known", "nearest_neighbour", "jcbb"});
+  table.add("match_gate", association_options_.match_gate, "", {0, 1e9},
+            "Largest squared Mahalanobis distance of a match by position.");
+  table.add("new_gate", association_options_.new_gate, "", {0, 1e9},
+            "A feature is a new landmark beyond this squared distance from all others; between the gates it "
+            "is left out.");
+  table.add(
+      "search_margin", association_options_.search_margin_m, "m", {0, 1e6},
+      "Landmarks so far outside of a submap are looked at too, besides the uncertainty of where it starts.");
+  table.add("merge", association_options_.merge, "Merge landmarks that turn out to be one in the end.");
+}
+
+void EifTree::validate() const {
+  if (association_options_.new_gate < association_options_.match_gate)
+    throw ConfigError("[eif_tree] new_gate must not be less than match_gate");
 }
 
 JoiningOptions EifTree::joiningOptions() const {
@@ -59,16 +96,35 @@ JoiningOptions EifTree::joiningOptions() const {
 
 JoinedLandmarks EifTree::join(const LandmarkSubmaps& submaps, const ProgressCallback& progress) const {
   const auto show = [&](double share) { return !progress || progress(share, "joining landmarks"); };
-  const AssociatedProblem associated = associateByIds(submaps);
-  const Joining joining = joinBy(joiningOptions(), associated.problem, show);
+  return association_ == "known" ? joinKnown(submaps, show) : joinUnknown(submaps, show);
+}
 
+JoinedLandmarks EifTree::joinKnown(const LandmarkSubmaps& submaps,
+                                   const std::function<bool(double)>& progress) const {
+  const AssociatedProblem associated = associateByIds(submaps);
+  return resultOf(associated, joinBy(joiningOptions(), associated.problem, progress));
+}
+
+JoinedLandmarks EifTree::joinUnknown(const LandmarkSubmaps& submaps,
+                                     const std::function<bool(double)>& progress) const {
+  AssociationOptions options = association_options_;
+  options.joint_search = association_ == "jcbb";
+  constexpr double kAssociationShare = 0.95;  // of the time
+  auto found = associateByPosition(submaps, options, options_.gauss_newton,
+                                   [&](double share) { return progress(kAssociationShare * share); });
   JoinedLandmarks joined;
-  joined.status = joining.result.status;
-  joined.reason = joining.result.reason;
-  joined.objective = joining.result.objective;
-  joined.iterations = joining.result.iterations;
-  joined.associations = associated.associations;
-  fillIn(associated, joining, joined);
+  if (found) {
+    joined =
+        resultOf(found->associated,
+                 joinFrom(found->state, found->associated.problem, options_.gauss_newton, [&](double share) {
+                   return progress(kAssociationShare + (1 - kAssociationShare) * share);
+                 }));
+  } else {
+    joined.status = JoinStatus::kFailed;
+    joined.reason = "the association was stopped or the information matrix is not positive definite";
+    joined.frames = chainedFrames(submaps);
+  }
+  joined.association_known = false;
   return joined;
 }
 

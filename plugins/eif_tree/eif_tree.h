@@ -2,9 +2,11 @@
 
 #include <submap_slam/core/landmark_joiner.h>
 
+#include <functional>
 #include <string>
 
 #include "joining.h"
+#include "unknown_association.h"
 
 namespace submap_slam {
 
@@ -21,14 +23,21 @@ class EifTree : public LandmarkJoiner {
     return "sparse information filter over landmark submaps, by a binary tree or sequentially";
   }
   void describe(ParameterTable& table) override;
+  void validate() const override;
 
   JoinedLandmarks join(const LandmarkSubmaps& submaps, const ProgressCallback& progress) const override;
 
  private:
   landmark_joining::JoiningOptions joiningOptions() const;
+  JoinedLandmarks joinKnown(const LandmarkSubmaps& submaps,
+                            const std::function<bool(double)>& progress) const;
+  JoinedLandmarks joinUnknown(const LandmarkSubmaps& submaps,
+                              const std::function<bool(double)>& progress) const;
 
   std::string method_ = "tree_gn";
   landmark_joining::JoiningOptions options_;
+  std::string association_ = "known";
+  landmark_joining::AssociationOptions association_options_;
 };
 
 }  // namespace submap_slam

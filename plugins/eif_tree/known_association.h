@@ -11,6 +11,10 @@ namespace submap_slam::landmark_joining {
 
 /** A joint problem with the observations that it points to, and what became of each feature. */
 struct AssociatedProblem {
+  AssociatedProblem() = default;
+  AssociatedProblem(AssociatedProblem&&) = default;
+  AssociatedProblem& operator=(AssociatedProblem&&) = default;
+
   std::vector<Observation> observations;
   JointProblem problem;                ///< points into `observations`
   std::vector<uint32_t> landmark_ids;  ///< of each landmark

@@ -1,0 +1,195 @@
+#include <gmock/gmock.h>
+#include <submap_slam/core/joined_landmarks.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "eif_tree/compatibility.h"
+#include "eif_tree/joining.h"
+#include "eif_tree/merging.h"
+#include "eif_tree/prediction.h"
+#include "eif_tree/sequential_filter.h"
+#include "eif_tree/unknown_association.h"
+#include "landmark_world.h"
+
+namespace submap_slam {
+namespace {
+
+using namespace landmark_joining;
+using ::testing::ElementsAre;
+using testing::LandmarkWorldOptions;
+using testing::simulateLandmarks;
+using ::testing::UnorderedElementsAre;
+
+/** Pairings on a line along x with what all features share (variance `common`) and what each has for itself.
+ */
+Candidates onALine(const std::vector<Pairing>& pairings, const std::vector<double>& innovations,
+                   double common, double own) {
+  Candidates c;
+  c.pairings = pairings;
+  const auto rows = 2 * static_cast<Eigen::Index>(pairings.size());
+  c.innovation = Eigen::VectorXd::Zero(rows);
+  c.covariance = Eigen::MatrixXd::Zero(rows, rows);
+  for (std::size_t i = 0; i < pairings.size(); ++i) {
+    const auto row = 2 * static_cast<Eigen::Index>(i);
+    c.innovation[row] = innovations[i];
+    c.pairings[i].distance2 = innovations[i] * innovations[i] / (common + own);
+    for (std::size_t k = 0; k < pairings.size(); ++k) {
+      const bool same = pairings[i].feature == pairings[k].feature;
+      const auto column = 2 * static_cast<Eigen::Index>(k);
+      c.covariance.block<2, 2>(row, column) = (common + (same ? own : 0)) * Eigen::Matrix2d::Identity();
+    }
+    c.covariance(row, row) += 1e-6, c.covariance(row + 1, row + 1) += 1e-6;
+  }
+  return c;
+}
+
+TEST(Compatibility, GateIsTheQuantileOfChiSquared) {
+  EXPECT_NEAR(gate(2), 9.210, 0.02);
+  EXPECT_NEAR(gate(10), 23.209, 0.04);
+  EXPECT_NEAR(gate(200), 249.445, 0.04);
+}
+
+TEST(Compatibility, BothFindWhatIsClear) {
+  const auto c = onALine({{0, 5, 0}, {1, 6, 0}}, {0.1, 0.1}, 1, 0.01);
+  EXPECT_THAT(nearestNeighbours(c), UnorderedElementsAre(0u, 1u));
+  EXPECT_THAT(jointCompatibility(c), UnorderedElementsAre(0u, 1u));
+}
+
+/** The whole submap is shifted by 2 m, a common error with a standard deviation of 2 m; landmarks stand every
+ * 3 m, so that the second feature is nearer to a wrong one. */
+Candidates shifted() {
+  // Feature 0 may only be landmark 0 (2 off). Feature 1 may be landmark 1 (2 off) or landmark 2 (−1 off).
+  return onALine({{0, 0, 0}, {1, 1, 0}, {1, 2, 0}, {2, 3, 0}}, {2, 2, -1, 2}, 4, 0.01);
+}
+
+TEST(Compatibility, JointSearchSeesACommonShiftThatNearestNeighboursDoNot) {
+  const auto nearest = nearestNeighbours(shifted());
+  EXPECT_EQ(nearest.front(), 2u) << "the nearest pairing is a wrong one";
+  EXPECT_EQ(nearest.size(), 1u) << "and contradicts the right ones";
+  EXPECT_THAT(jointCompatibility(shifted()), UnorderedElementsAre(0u, 1u, 3u));
+}
+
+TEST(Compatibility, ALandmarkIsMatchedOnce) {
+  const auto c = onALine({{0, 5, 0}, {1, 5, 0}}, {0.2, 0.1}, 1, 0.01);
+  EXPECT_THAT(nearestNeighbours(c), ElementsAre(1u));
+  EXPECT_EQ(jointCompatibility(c).size(), 1u);
+}
+
+TEST(Compatibility, NothingComesOfNothing) {
+  EXPECT_TRUE(nearestNeighbours({}).empty());
+  EXPECT_TRUE(jointCompatibility({}).empty());
+}
+
+TEST(Prediction, HasTheCovarianceOfTheDenseInverse) {
+  const auto submaps = simulateLandmarks({});
+  SequentialFilter filter({});
+  const auto associated = associateByIds({submaps[0]});
+  std::vector<int> landmarks(submaps[0]->features.size());
+  for (std::size_t i = 0; i < landmarks.size(); ++i) landmarks[i] = static_cast<int>(i);
+  ASSERT_TRUE(filter.fuse(associated.observations[0], landmarks));
+  const Prediction p = predictLandmarks(*filter.form(), filter.state(), 1000);
+  ASSERT_EQ(p.landmarks.size(), landmarks.size());
+
+  // After one submap the state is that submap with its covariance; the features are seen from its end.
+  const Eigen::MatrixXd q = submaps[0]->covariance.asEigen();
+  const auto& end = submaps[0]->end_pose;
+  const auto& f = submaps[0]->features[1];
+  const double c = std::cos(end.phi), s = std::sin(end.phi), dx = f.x - end.x, dy = f.y - end.y;
+  const Eigen::Vector2d h(c * dx + s * dy, -s * dx + c * dy);
+  EXPECT_LT((p.mean.segment<2>(2) - h).norm(), 1e-9);
+  Eigen::Matrix<double, 2, 5> j;
+  j << -c, -s, h.y(), c, s, s, -c, -h.x(), -s, c;
+  const std::vector<int> rows{0, 1, 2, 5, 6};
+  const Eigen::Matrix2d expected = j * q(rows, rows) * j.transpose();
+  EXPECT_LT((p.covariance.block<2, 2>(2, 2) - expected).norm(), 1e-7 * expected.norm());
+}
+
+void expectTruth(const LandmarkWorldOptions& world, bool joint_search) {
+  const auto submaps = simulateLandmarks(world);
+  AssociationOptions options;
+  options.joint_search = joint_search;
+  const auto found = associateByPosition(submaps, options, {}, {});
+  ASSERT_TRUE(found);
+  const auto errors = compareWithIds(found->associated.associations);
+  EXPECT_EQ(errors.wrong, 0u);
+  EXPECT_EQ(errors.missed, 0u);
+  EXPECT_LE(errors.dropped, 2u);
+  EXPECT_EQ(found->state.landmarks.size(), associateByIds(submaps).problem.landmark_count);
+}
+
+TEST(UnknownAssociation, FindsTheTruthRoundALoop) {
+  for (const uint32_t seed : {1u, 2u, 3u}) {
+    LandmarkWorldOptions world;
+    world.seed = seed;
+    expectTruth(world, false);
+    expectTruth(world, true);
+  }
+}
+
+TEST(UnknownAssociation, DoesNotLookAtIds) {
+  auto submaps = simulateLandmarks({});
+  const auto found = associateByPosition(submaps, {}, {}, {});
+  for (const auto& submap : submaps)
+    for (std::size_t i = 0; i < submap->features.size(); ++i)
+      submap->features[i].id = static_cast<uint32_t>(900 + i);
+  const auto renamed = associateByPosition(submaps, {}, {}, {});
+  ASSERT_TRUE(found && renamed);
+  ASSERT_EQ(found->state.landmarks.size(), renamed->state.landmarks.size());
+  EXPECT_EQ(found->state.landmarks.back(), renamed->state.landmarks.back());
+}
+
+TEST(UnknownAssociation, AFeatureBetweenTheGatesIsLeftOut) {
+  // Poses are exact and both sigmas are 0.1 m: 0.45 m apart is a squared distance of 10.1, 0.55 m is 15.1.
+  const auto decision = [](double shift) {
+    LandmarkSubmaps submaps;
+    for (const double x : {5.0, 5.0 + shift}) {
+      auto submap = LandmarkSubmap::Create();
+      submap->id = static_cast<uint32_t>(submaps.size());
+      submap->features = {{1, x, 0, 1}};
+      submap->covariance.setIdentity(5);
+      submap->covariance *= 0.01;
+      for (int i = 0; i < 3; ++i) submap->covariance(i, i) = 1e-8;
+      submaps.push_back(submap);
+    }
+    return associateByPosition(submaps, {}, {}, {})->associated.associations.back();
+  };
+  using Kind = FeatureAssociation::Kind;
+  EXPECT_EQ(decision(0.1).kind, Kind::kMatched);
+  EXPECT_EQ(decision(0.45).kind, Kind::kDropped);
+  EXPECT_NEAR(decision(0.45).distance2, 0.45 * 0.45 / 0.02, 0.01);
+  EXPECT_EQ(decision(0.55).kind, Kind::kNew);
+}
+
+/** The submaps with every landmark that the last three saw under a name of its own there. */
+LandmarkSubmaps withDuplicates() {
+  auto submaps = simulateLandmarks({});
+  for (std::size_t k = submaps.size() - 3; k < submaps.size(); ++k)
+    for (auto& feature : submaps[k]->features) feature.id += 1000;
+  return submaps;
+}
+
+TEST(Merging, MakesOneOfWhatAgrees) {
+  auto associated = associateByIds(withDuplicates());
+  const std::size_t truth = associateByIds(simulateLandmarks({})).problem.landmark_count;
+  ASSERT_GT(associated.problem.landmark_count, truth);
+  JointState state = joinBy({}, associated.problem, {}).state;
+  const std::size_t before = associated.problem.landmark_count;
+  const std::size_t merges = mergeDuplicates(associated, state, 9.21, {});
+  EXPECT_EQ(associated.problem.landmark_count, truth);
+  EXPECT_EQ(before - merges, truth);
+  EXPECT_EQ(state.landmarks.size(), truth);
+  EXPECT_EQ(associated.hits.size(), truth);
+}
+
+TEST(Merging, LeavesWhatOneSubmapHoldsBothOf) {
+  auto submaps = simulateLandmarks({});
+  auto associated = associateByIds(submaps);
+  const std::size_t before = associated.problem.landmark_count;
+  JointState state = joinBy({}, associated.problem, {}).state;
+  EXPECT_EQ(mergeDuplicates(associated, state, 9.21, {}), 0u);
+  EXPECT_EQ(associated.problem.landmark_count, before);
+}
+
+}  // namespace
+}  // namespace submap_slam
