@@ -30,14 +30,15 @@ constexpr uint32_t kMaxFeatures = 20'000;
 
 /** The lower triangle row by row; the rest follows from it. */
 void writeSymmetric(CArchive& out, const CMatrixDouble& matrix) {
-  for (int row = 0; row < matrix.rows(); ++row)
-    for (int column = 0; column <= row; ++column) out << matrix(row, column);
+  const auto size = static_cast<std::size_t>(matrix.rows());
+  for (std::size_t row = 0; row < size; ++row)
+    for (std::size_t column = 0; column <= row; ++column) out << matrix(row, column);
 }
 
 CMatrixDouble readSymmetric(CArchive& in, std::size_t size) {
   CMatrixDouble matrix(size, size);
-  for (int row = 0; row < matrix.rows(); ++row)
-    for (int column = 0; column <= row; ++column) {
+  for (std::size_t row = 0; row < size; ++row)
+    for (std::size_t column = 0; column <= row; ++column) {
       in >> matrix(row, column);
       matrix(column, row) = matrix(row, column);
     }
@@ -109,7 +110,7 @@ void LandmarkSubmap::setSensorPose(const mrpt::poses::CPose3D&) {
 
 void LandmarkSubmap::getDescriptionAsText(std::ostream& out) const {
   CObservation::getDescriptionAsText(out);
-  const auto sigma = [this](int i) { return std::sqrt(covariance(i, i)); };
+  const auto sigma = [this](std::size_t i) { return std::sqrt(covariance(i, i)); };
   out << fmt::format(
       "\nLandmark submap {}\n"
       "  features     : {} within {:.1f} m\n"
@@ -119,7 +120,7 @@ void LandmarkSubmap::getDescriptionAsText(std::ostream& out) const {
       mrpt::RAD2DEG(sigma(2)));
   for (std::size_t i = 0; i < features.size(); ++i) {
     const auto& f = features[i];
-    const int row = 3 + 2 * static_cast<int>(i);
+    const std::size_t row = 3 + 2 * i;
     out << fmt::format("  feature {:>6} : x {:.3f} m ± {:.3f}, y {:.3f} m ± {:.3f}, {} hits\n", f.id, f.x,
                        sigma(row), f.y, sigma(row + 1), f.hits);
   }
@@ -149,7 +150,7 @@ void LandmarkSubmap::getVisualizationInto(mrpt::opengl::CSetOfObjects& out) cons
 
 CMatrixDouble flooredCovariance(const LandmarkSubmap& submap) {
   CMatrixDouble covariance = submap.covariance;
-  for (int i = 0; i < 3; ++i) covariance(i, i) = std::max(covariance(i, i), kLeastPoseVariance);
+  for (std::size_t i = 0; i < 3; ++i) covariance(i, i) = std::max(covariance(i, i), kLeastPoseVariance);
   return covariance;
 }
 

@@ -128,13 +128,12 @@ void LandmarkText::readState(LandmarkSubmap& submap, uint32_t dimension) {
 }
 
 void LandmarkText::readCovariance(LandmarkSubmap& submap, uint32_t dimension) {
-  const int size = static_cast<int>(dimension);
-  submap.covariance = mrpt::math::CMatrixDouble(size, size);
-  for (int row = 0; row < size; ++row) {
+  submap.covariance = mrpt::math::CMatrixDouble(dimension, dimension);
+  for (std::size_t row = 0; row < dimension; ++row) {
     const std::string expected =
         fmt::format("row {} of the covariance of submap {} with {} numbers", row + 1, submaps_, row + 1);
     requireLine(expected);
-    for (int column = 0; column <= row; ++column)
+    for (std::size_t column = 0; column <= row; ++column)
       submap.covariance(row, column) = submap.covariance(column, row) = number();
     requireEndOfLine(expected);
   }
@@ -147,8 +146,8 @@ std::string landmarkText(const LandmarkSubmaps& submaps) {
     const auto& end = submap.end_pose;
     text += fmt::format("MAP {} {}\n0 {}\n0 {}\n0 {}\n", k + 1, submap.dimension(), end.x, end.y, end.phi);
     for (const auto& f : submap.features) text += fmt::format("{} {}\n{} {}\n", f.id, f.x, f.id, f.y);
-    for (int row = 0; row < submap.covariance.rows(); ++row)
-      for (int column = 0; column <= row; ++column)
+    for (std::size_t row = 0; row < submap.dimension(); ++row)
+      for (std::size_t column = 0; column <= row; ++column)
         text += fmt::format("{}{}", submap.covariance(row, column), column == row ? "\n" : " ");
   }
   return text;
