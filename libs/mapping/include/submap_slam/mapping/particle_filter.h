@@ -30,7 +30,7 @@ struct FilterParams {
   double rescue_below = 0.85;      ///< share of the inlier beams that are usual
   double slip_beyond = 5.0;        ///< sigmas
   double slip_cost = 10.0;         ///< negative log probability of a slip while odometry goes on evenly
-  double surprise_cost = 1.0;      ///< the same where odometry says something quite different from before
+  double surprise_cost = 2.0;      ///< the same where odometry says something quite different from before
   double slip_information = 0.02;  ///< share of the odometry's information that is left in a rescue
   double key_distance = 0.15;      ///< m
   double key_angle = 0.1;          ///< rad
