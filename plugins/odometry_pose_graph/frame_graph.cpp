@@ -22,7 +22,7 @@ void FrameGraph::optimise() {
                              link.loop ? &cauchy : nullptr, blocks[link.from].values, blocks[link.to].values);
   problem.SetParameterBlockConstant(blocks.front().values);
 
-  if (!solve(problem)) return;
+  if (solve(problem) == Solution::kUnusable) return;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     frames[i] = blocks[i].pose();
     frames[i].phi = mrpt::math::wrapToPi(frames[i].phi);

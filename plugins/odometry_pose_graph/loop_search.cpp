@@ -24,9 +24,8 @@ using mrpt::math::TPose2D;
 /** Quantiles of χ² with 3 and 6 degrees of freedom that a true match stays below (0.999 and 0.9997). */
 constexpr double kChi2Alone = 16, kChi2Together = 25;
 
-Matrix3d variances(double sigma_xy, double sigma_phi) {
-  return Vector3d(sigma_xy * sigma_xy, sigma_xy * sigma_xy, sigma_phi * sigma_phi).asDiagonal();
-}
+/** Standard deviations of what lies beyond a gap in the log: it may be anywhere. */
+constexpr double kGap_m = 100, kGap_rad = 3;
 
 /** Odometry's idea of T_s_end, if the log has odometry at both ends. */
 std::optional<TPose2D> odometryOfEnd(const GridSubmap& submap, const GridSubmap& next) {
@@ -36,15 +35,14 @@ std::optional<TPose2D> odometryOfEnd(const GridSubmap& submap, const GridSubmap&
   return *to - *from;
 }
 
-/** Of consecutive submaps; across a gap in the log the next one may be anywhere that can be searched. */
+/** Of consecutive submaps. */
 Link chainLink(const GridSubmaps& submaps, std::size_t k, const LoopSearchParams& params) {
   const GridSubmap &submap = *submaps[k], &next = *submaps[k + 1];
   const ChainNoise& noise = params.chain;
   const Matrix3d end = submap.end_pose.cov.asEigen();
   Link link{k, k + 1, submap.end_pose.mean.asTPose(), end, end, false};
   if (!submap.has_successor) {
-    const double xy = params.max_window, phi = params.max_window_phi;
-    link.covariance.diagonal() += Vector3d(xy * xy, xy * xy, phi * phi);
+    link.covariance += variances(kGap_m, kGap_rad);
     link.usual_covariance = link.covariance;
     return link;
   }

@@ -18,10 +18,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using mrpt::math::TPose2D;
 
-Matrix3d diagonal(double sigma_xy, double sigma_phi) {
-  return Vector3d(sigma_xy * sigma_xy, sigma_xy * sigma_xy, sigma_phi * sigma_phi).asDiagonal();
-}
-
 /** One problem from the first block to the last residual. */
 class NodeProblem {
  public:
@@ -39,7 +35,7 @@ class NodeProblem {
       addOdometryAlongThePath();
   }
 
-  bool solve() { return submap_slam::pose_graph::solve(problem_); }
+  Solution solve() { return submap_slam::pose_graph::solve(problem_); }
 
   TPose2D frame(std::size_t k) const { return blocks_[k].front().pose(); }
 
@@ -92,7 +88,7 @@ void NodeProblem::placeBlocks(const FrameGraph& graph) {
 }
 
 void NodeProblem::addIntra() {
-  const Matrix3d covariance = diagonal(params_.intra_sigma_xy, params_.intra_sigma_phi);
+  const Matrix3d covariance = variances(params_.intra_sigma_xy, params_.intra_sigma_phi);
   for (std::size_t k = 0; k < submaps_.size(); ++k)
     for (std::size_t g = 1; g < blocks_[k].size(); ++g)
       add(node(k, g).pose, covariance, blocks_[k].front(), blocks_[k][g]);
@@ -113,8 +109,9 @@ void NodeProblem::addOdometryFromFrames() {
     for (std::size_t g = 1; g < blocks_[k].size(); ++g) {
       const auto step = odometryBetween(node(k, g - 1), node(k, g));
       if (!step) break;
-      loro = loro + odometry_.corrected(*step);
-      length += odometryLength(*step);
+      const TPose2D motion = odometry_.corrected(*step);
+      loro = loro + motion;
+      length += odometryLength(motion);
       addOdometry(loro, length, blocks_[k].front(), blocks_[k][g]);
     }
   }
@@ -123,8 +120,10 @@ void NodeProblem::addOdometryFromFrames() {
 void NodeProblem::addOdometryAlongThePath() {
   for (std::size_t k = 0; k < submaps_.size(); ++k) {
     const auto link = [&](const SubmapNode& from, const SubmapNode& to, PoseBlock& a, PoseBlock& b) {
-      if (const auto step = odometryBetween(from, to))
-        addOdometry(odometry_.corrected(*step), odometryLength(*step), a, b);
+      const auto step = odometryBetween(from, to);
+      if (!step) return;
+      const TPose2D motion = odometry_.corrected(*step);
+      addOdometry(motion, odometryLength(motion), a, b);
     };
     for (std::size_t g = 1; g < blocks_[k].size(); ++g)
       link(node(k, g - 1), node(k, g), blocks_[k][g - 1], blocks_[k][g]);
@@ -179,7 +178,8 @@ FusedGraph fuseOdometry(const GridSubmaps& submaps, FrameGraph found, const Fusi
   fused.odometry = odometry;
   const GraphNodes nodes = graphNodesOf(submaps, params.node_distance, params.node_angle);
   NodeProblem problem(submaps, found, params, nodes, odometry);
-  if (problem.solve()) {
+  fused.solution = problem.solve();
+  if (fused.solution != Solution::kUnusable) {
     for (std::size_t k = 0; k < submaps.size(); ++k) {
       found.frames[k] = problem.frame(k);
       found.frames[k].phi = mrpt::math::wrapToPi(found.frames[k].phi);

@@ -5,6 +5,7 @@
 
 #include "frame_graph.h"
 #include "odometry_model.h"
+#include "solver.h"
 
 namespace submap_slam::pose_graph {
 
@@ -26,6 +27,7 @@ struct FusionParams {
 
 /** Nodes and submap frames, and all that is known of them. */
 struct FusedGraph {
+  Solution solution = Solution::kConverged;  ///< if unusable, the frames are those to start from
   FrameGraph frames;
   OdometryModel odometry;
 

@@ -44,16 +44,21 @@ std::vector<Step> stepsOf(const GridSubmaps& submaps, const GraphNodes& nodes) {
   return steps;
 }
 
+/** A gain beyond these says that something else is wrong. */
+double plausible(double gain) { return gain > 0.5 && gain < 2 ? gain : 1; }
+
+/** Steps are chosen by what the scans say: those where odometry's own noise is large would pull the gains to
+ * 0. */
 void estimateGains(OdometryModel& model, const std::vector<Step>& steps) {
   std::vector<double> xy, phi;
   for (const Step& step : steps) {
-    const double by_odometry = std::hypot(step.odometry.x, step.odometry.y);
-    const double turn = mrpt::math::wrapToPi(step.odometry.phi);
-    if (by_odometry > kShortest_m) xy.push_back(std::hypot(step.matched.x, step.matched.y) / by_odometry);
-    if (std::abs(turn) > kSmallest_rad) phi.push_back(mrpt::math::wrapToPi(step.matched.phi) / turn);
+    const double moved = std::hypot(step.matched.x, step.matched.y);
+    const double turned = mrpt::math::wrapToPi(step.matched.phi);
+    if (moved > kShortest_m) xy.push_back(std::hypot(step.odometry.x, step.odometry.y) / moved);
+    if (std::abs(turned) > kSmallest_rad) phi.push_back(mrpt::math::wrapToPi(step.odometry.phi) / turned);
   }
-  if (xy.size() >= kFewestSteps) model.gain_xy = quantile(xy, 0.5);
-  if (phi.size() >= kFewestSteps) model.gain_phi = quantile(phi, 0.5);
+  if (xy.size() >= kFewestSteps) model.gain_xy = plausible(1 / quantile(xy, 0.5));
+  if (phi.size() >= kFewestSteps) model.gain_phi = plausible(1 / quantile(phi, 0.5));
 }
 
 void estimateVariances(OdometryModel& model, const std::vector<Step>& steps) {

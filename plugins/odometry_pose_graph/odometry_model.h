@@ -22,7 +22,8 @@ std::optional<mrpt::math::TPose2D> odometryBetween(const SubmapNode& a, const Su
 /** How far to believe the odometry of a log, from what the scans say: the weights of its residuals, for
  * translation and rotation apart.
  *
- * All disagreement between odometry and scans is put down to odometry, so it is never believed too much.
+ * All disagreement between odometry and scans is put down to odometry. Where scans see nothing, along a
+ * corridor, the matched poses follow odometry and agree with it whatever its error.
  */
 struct OdometryModel {
   double gain_xy = 1, gain_phi = 1;          ///< true motion / odometry's motion

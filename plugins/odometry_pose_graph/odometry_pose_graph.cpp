@@ -27,7 +27,8 @@ std::string describeOdometry(const pose_graph::OdometryModel& odometry) {
                      odometry.gain_xy, odometry.gain_phi);
 }
 
-/** The chain as the graph has it: end poses, with less weight where the rest contradicts them. */
+/** The chain as the fusion leaves it, so that a joiner behind does not go back to the end poses; with less
+ * weight where these were contradicted. */
 std::vector<Constraint> chainConstraints(const pose_graph::FrameGraph& graph, const GridSubmaps& submaps) {
   std::vector<Constraint> constraints;
   for (const auto& link : graph.links) {
@@ -35,9 +36,9 @@ std::vector<Constraint> chainConstraints(const pose_graph::FrameGraph& graph, co
     Constraint constraint;
     constraint.from = submaps[link.from]->id;
     constraint.to = submaps[link.to]->id;
-    constraint.T_a_b.mean = mrpt::poses::CPose2D(link.T_a_b);
+    constraint.T_a_b.mean = mrpt::poses::CPose2D(graph.frames[link.to] - graph.frames[link.from]);
     constraint.T_a_b.cov.asEigen() = link.covariance;
-    constraint.reason = "end pose of the submap";
+    constraint.reason = "end pose of the submap, fused";
     constraints.push_back(constraint);
   }
   return constraints;
@@ -119,7 +120,8 @@ JoinedMap OdometryPoseGraph::join(const GridSubmaps& submaps, const JoinedMap& i
   }
   const auto accepted = std::count_if(found.candidates.begin(), found.candidates.end(),
                                       [](const Constraint& c) { return c.accepted; });
-  joined.status = found.stopped ? JoinStatus::kIterationLimit : JoinStatus::kConverged;
+  const bool converged = !found.stopped && fused.solution == Solution::kConverged;
+  joined.status = converged ? JoinStatus::kConverged : JoinStatus::kIterationLimit;
   joined.reason =
       fmt::format("{} of {} loop candidates accepted{}; {}", accepted, found.candidates.size(),
                   found.stopped ? ", stopped before the end" : "", describeOdometry(fused.odometry));

@@ -21,6 +21,10 @@ RelationError relationError(const mrpt::math::TPose2D& a, const mrpt::math::TPos
   return out;
 }
 
+Eigen::Matrix3d variances(double sigma_xy, double sigma_phi) {
+  return Eigen::Vector3d(sigma_xy * sigma_xy, sigma_xy * sigma_xy, sigma_phi * sigma_phi).asDiagonal();
+}
+
 Eigen::Matrix3d squareRootInformation(const Eigen::Matrix3d& covariance) {
   return covariance.inverse().llt().matrixU();
 }

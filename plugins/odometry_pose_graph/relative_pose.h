@@ -17,6 +17,9 @@ struct RelationError {
 RelationError relationError(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b,
                             const mrpt::math::TPose2D& T_a_b);
 
+/** Of a relation with these standard deviations (m, rad), independent of each other. */
+Eigen::Matrix3d variances(double sigma_xy, double sigma_phi);
+
 /** Lᵀ of the information Ω = L Lᵀ of a covariance, which weights a residual: ‖Lᵀ e‖² = eᵀ Ω e. */
 Eigen::Matrix3d squareRootInformation(const Eigen::Matrix3d& covariance);
 

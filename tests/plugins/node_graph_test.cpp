@@ -79,6 +79,21 @@ TEST(OdometryModel, FindsAWrongScale) {
   EXPECT_LT(model.variance_xy, 1e-5);
 }
 
+TEST(OdometryModel, NoisyHeadingsOnAStraightPathSayNothingOfTheGain) {
+  NormalGenerator normal(7, 0);
+  const auto model = modelOf(straightSubmaps(
+      20, 50, [&](const TPose2D& motion) { return motion + TPose2D(0, 0, 0.04 * normal()); }));
+  EXPECT_EQ(model.gain_phi, 1);
+}
+
+TEST(OdometryModel, FindsAWrongScaleOfTurns) {
+  auto submaps = straightSubmaps(3, 50, [](const TPose2D&) { return TPose2D(0, 0, 0.2 * 1.25); });
+  for (auto& submap : submaps)
+    for (std::size_t n = 0; n < submap->nodes.size(); ++n)
+      submap->nodes[n].pose = {0, 0, 0.2 * static_cast<double>(n)};
+  EXPECT_NEAR(modelOf(submaps).gain_phi, 0.8, 1e-6);
+}
+
 TEST(OdometryModel, IsUnknownWithoutOdometryAndForShortLogs) {
   EXPECT_FALSE(modelOf(straightSubmaps(1, 5, exact)).known());
   auto submaps = straightSubmaps(3, 50, exact);
@@ -132,6 +147,25 @@ TEST(FuseOdometry, WeighsMatchAgainstOdometry) {
     EXPECT_NEAR(fused.nodes[0][39].x, expected, 1e-4);
     EXPECT_NEAR(fused.nodes[0][20].x - 20 * kStep, (expected - matched) * 20 / 39, 1e-4);
   }
+}
+
+/** Between the last node of a submap and the next submap's frame: by hand as above. */
+TEST(FuseOdometry, OdometryReachesAcrossTheEndOfASubmap) {
+  auto submaps = straightSubmaps(2, 1, [](const TPose2D&) { return TPose2D(1.1 * kStep, 0, 0); });
+  FrameGraph graph = chainOf(submaps);
+  graph.links[0].usual_covariance = 4 * Eigen::Matrix3d::Identity();
+  OdometryModel model;
+  model.variance_xy = model.variance_phi = 1 / (1.1 * kStep);  // variance 1 for this step
+  const auto fused = fuseOdometry(submaps, graph, {}, model);
+  EXPECT_NEAR(fused.frames.frames[1].x, (0.25 * kStep + 1.1 * kStep) / 1.25, 1e-5);
+}
+
+TEST(FuseOdometry, OdometryMissingInTheMiddleIsSkipped) {
+  auto submaps = straightSubmaps(2, 40, exact);
+  submaps[0]->nodes[17].odometry.reset();
+  const auto fused = fuseOdometry(submaps, chainOf(submaps), {});
+  EXPECT_NEAR(fused.nodes[0][39].x, 39 * kStep, 1e-9);
+  EXPECT_NEAR(fused.frames.frames[1].x, 10, 1e-9);
 }
 
 TEST(FuseOdometry, OffMovesNoNode) {

@@ -1,6 +1,9 @@
 #include <submap_slam/matching/submap_matcher.h>
 
+#include <mrpt/math/wrap2pi.h>
+
 #include <algorithm>
+#include <cmath>
 
 namespace submap_slam {
 namespace {
@@ -31,14 +34,22 @@ MatchResult SubmapMatcher::refine(const SubmapSurface& surface, const TPose2D& s
   return matcher_.match(surfels_, surface.dense, loosePrior(start));
 }
 
+/** The search takes the two faces of a thin wall for one; where the window's centre is a good guess it leads
+ * to the right one. Farther away the match from there would be another place, which the search found to be
+ * worse. */
+const MatchResult& SubmapMatcher::better(const MatchResult& from_search,
+                                         const MatchResult& from_centre) const {
+  const TPose2D apart = from_centre.pose - from_search.pose;
+  const bool same_place = std::hypot(apart.x, apart.y) <= params_.rivals.distance &&
+                          std::abs(mrpt::math::wrapToPi(apart.phi)) <= params_.rivals.turn;
+  return same_place && from_centre.cost < from_search.cost ? from_centre : from_search;
+}
+
 std::optional<SubmapMatch> SubmapMatcher::match(const PackedEvidence& other, const SubmapSurface& surface,
                                                 const PoseWindow& window) const {
   const auto found = searchWindow(pyramid_, surface.sparse, window, params_.min_score, params_.rivals);
   if (!found) return std::nullopt;
-  // The search takes the two faces of a thin wall for one; where the window's centre is a good guess it leads
-  // to the right one.
-  const MatchResult from_search = refine(surface, found->pose), from_centre = refine(surface, window.centre);
-  const MatchResult& refined = from_centre.cost < from_search.cost ? from_centre : from_search;
+  const MatchResult refined = better(refine(surface, found->pose), refine(surface, window.centre));
 
   SubmapMatch match;
   match.T_ref_other = refined.pose;

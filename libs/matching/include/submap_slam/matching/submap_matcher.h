@@ -50,6 +50,7 @@ class SubmapMatcher {
 
  private:
   MatchResult refine(const SubmapSurface& surface, const mrpt::math::TPose2D& start) const;
+  const MatchResult& better(const MatchResult& from_search, const MatchResult& from_centre) const;
 
   SubmapMatcherParams params_;
   std::shared_ptr<const PackedEvidence> evidence_;
