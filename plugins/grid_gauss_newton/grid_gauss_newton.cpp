@@ -117,10 +117,7 @@ CoarseToFineOptions GridGaussNewton::options() const {
 
 int GridGaussNewton::finestLevel(const GridSubmaps& submaps) const {
   double cells = 0;
-  for (const auto& submap : submaps) {
-    const auto packed = submap->packedEvidence();
-    cells += static_cast<double>(packed ? packed->storedCells() : submap->evidence.observedCells());
-  }
+  for (const auto& submap : submaps) cells += static_cast<double>(submap->evidenceSummary().stored_cells);
   int level = finest_level_;
   for (cells /= std::pow(4, level); cells > max_cells_; cells /= 4) ++level;
   return level;

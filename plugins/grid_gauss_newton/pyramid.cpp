@@ -157,17 +157,12 @@ EvidenceSample EvidenceLevel::sample(double column, double row) const {
 }
 
 double backgroundOf(const GridSubmaps& submaps) {
-  std::vector<double> least(submaps.size(), std::numeric_limits<double>::infinity());
-  tbb::parallel_for(std::size_t{0}, submaps.size(), [&](std::size_t i) {
-    const LoadedEvidence grid(*submaps[i]);
-    auto log_odds = grid->log_odds.begin();
-    for (const float hits : grid->hits.data()) {
-      const double sum = static_cast<double>(*log_odds++);
-      if (hits > 0) least[i] = std::min(least[i], sum / static_cast<double>(hits));
-    }
-  });
-  const double all = least.empty() ? 0 : *std::min_element(least.begin(), least.end());
-  return std::isfinite(all) ? all : 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& submap : submaps) {
+    const EvidenceSummary summary = submap->evidenceSummary();
+    if (summary.observed_cells > 0) least = std::min(least, summary.least_log_odds_per_hit);
+  }
+  return std::isfinite(least) ? least : 0;
 }
 
 std::vector<EvidenceLevels> buildPyramid(const GridSubmaps& submaps, const PyramidShape& shape) {
