@@ -81,6 +81,19 @@ void addRunOptions(CLI::App& command, RunOptions& options) {
       ->group(group);
 }
 
+void addMemoryOption(CLI::App& command, ConfigurationOptions& options) {
+  command
+      .add_option_function<uint64_t>(
+          "--memory",
+          [&options](uint64_t bytes) {
+            options.settings.push_back(fmt::format("joining.memory={}", static_cast<double>(bytes) / 1e6));
+          },
+          "About how much memory joining may take, as 500MB or 2GB; as --set joining.memory=MB")
+      ->transform(CLI::AsSizeValue(true))
+      ->type_name("SIZE")
+      ->group("Run");
+}
+
 tbb::global_control limitThreads(int threads) {
   const int count = threads > 0 ? threads : tbb::info::default_concurrency();
   return {tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count)};

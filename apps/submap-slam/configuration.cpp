@@ -16,6 +16,10 @@
 namespace submap_slam {
 namespace {
 
+/** What the program takes with the largest map and pyramid that it makes without being asked for larger ones.
+ */
+constexpr double kLeastMemory_MB = 300;
+
 /** The words of a list separated by commas or blanks. */
 std::vector<std::string> splitList(std::string text) {
   std::replace(text.begin(), text.end(), ',', ' ');
@@ -42,6 +46,11 @@ void describeJoiningParameters(ParameterTable& table, Configuration& config) {
       "Cell size of the global map where a joiner leaves its making to the program; 0: that of the submaps, "
       "doubled until the map has at most 20 million cells");
   table.add("landmark_joiner", config.joining.landmark_joiner, "Name of the joiner of landmark submaps");
+  table.add(
+      "memory", config.joining.memory, "MB", {kLeastMemory_MB, 1e9},
+      "About how much memory the program may take while it joins. What is left beside the map and the "
+      "joiners' own data keeps submaps; those that do not fit are read again when they are needed, with "
+      "the same result");
   table.section("plugins", "Shared libraries with joiners");
   table.add("load", config.plugins, "Plugin files to load besides the installed ones, separated by commas");
   for (const auto& joiner : config.joiners) joiner->describe(table);
@@ -80,6 +89,10 @@ std::shared_ptr<Form> joinerNamed(const std::vector<std::shared_ptr<Joiner>>& jo
 }
 
 }  // namespace
+
+std::size_t bytesForSubmaps(const JoiningParams& params) {
+  return static_cast<std::size_t>(1e6 * (params.memory - kLeastMemory_MB));
+}
 
 Configuration::Configuration(const std::vector<std::string>& plugin_files) {
   for (const auto& folder : pluginFolders()) loadPluginFolder(folder);

@@ -1,9 +1,12 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
 #include <memory>
 
 #include "commands.h"
+#include "configuration.h"
 #include "overlap.h"
 #include "reporter.h"
 #include "run_files.h"
@@ -24,17 +27,19 @@ std::string endPoseSigma(const GridSubmap& submap) {
                      std::sqrt(cov(2, 2)) * radians_to_degrees);
 }
 
-void printSubmap(const GridSubmap& submap, const EvidenceGrid& evidence, double overlap) {
-  const auto& grid = evidence.hits;
+void printSubmap(const GridSubmap& submap, const EvidenceSummary& grid, double overlap) {
   const std::string size =
-      fmt::format("{:.1f} x {:.1f}", grid.getXMax() - grid.getXMin(), grid.getYMax() - grid.getYMin());
+      fmt::format("{:.1f} x {:.1f}", grid.columns * grid.resolution, grid.rows * grid.resolution);
   fmt::print("{:>4} {:>8.1f} {:>6} {:>5} {:>9} {:>13} {:>6.0f} % {:>16}  {}\n", submap.id,
-             submap.pathLength(), submap.nodes.size(), submap.keyNodes(), evidence.observedCells(), size,
+             submap.pathLength(), submap.nodes.size(), submap.keyNodes(), grid.observed_cells, size,
              100 * overlap, endPoseSigma(submap), submap.statistics.closed_because);
 }
 
 int runInfo(const std::string& file) {
-  const RecoveredSubmaps read = readUsableSubmaps(file);
+  const std::string spill_file =
+      (std::filesystem::temp_directory_path() / fmt::format("submap-slam-{}.spill", getpid())).string();
+  const auto store = SubmapStore::create(bytesForSubmaps(JoiningParams{}), spill_file);
+  const RecoveredSubmaps read = readUsableSubmaps(file, store);
   const GridSubmaps& submaps = read.submaps;
   const auto overlaps = overlapShares(submaps, chainSubmaps(submaps).frames);
 
@@ -43,12 +48,12 @@ int runInfo(const std::string& file) {
              "cells", "size m", "overlap", "end pose sigma", "closed because");
   for (std::size_t i = 0; i < submaps.size(); ++i) {
     const GridSubmap& submap = *submaps[i];
-    const LoadedEvidence evidence(submap);
-    printSubmap(submap, *evidence, overlaps[i]);
+    const EvidenceSummary evidence = submap.evidenceSummary();
+    printSubmap(submap, evidence, overlaps[i]);
     totals.path_m += submap.pathLength();
     totals.nodes += submap.nodes.size();
     totals.keys += submap.keyNodes();
-    totals.cells += evidence->observedCells();
+    totals.cells += evidence.observed_cells;
   }
   fmt::print("{} submaps, {:.1f} m, {} nodes, {} key nodes, {} observed cells\n", submaps.size(),
              totals.path_m, totals.nodes, totals.keys, totals.cells);

@@ -56,6 +56,7 @@ void addJoinCommand(CLI::App& app, int& exit_code) {
                     "Landmark submaps: match by position, ignore the ids of the file");
   addConfigurationOptions(*command, options->run.configuration);
   addRunOptions(*command, options->run);
+  addMemoryOption(*command, options->run.configuration);
   command->footer(
       "Example: submap-slam join intel_submaps.rawlog -o intel --set joining.chain=grid_gauss_newton");
   command->callback([options, &exit_code] { exit_code = runJoin(*options); });

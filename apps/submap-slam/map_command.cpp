@@ -40,6 +40,7 @@ void addMapCommand(CLI::App& app, int& exit_code) {
   addConfigurationOptions(*command, options->run.configuration);
   addLogOptions(*command, options->run.configuration);
   addRunOptions(*command, options->run);
+  addMemoryOption(*command, options->run.configuration);
   command->footer(
       "A run that was stopped goes on when the same command is given again.\n"
       "Example: submap-slam map intel.rawlog -o intel --set submaps.max_distance=15");

@@ -48,6 +48,10 @@ void requireObservations(const EvidenceGrid& map) {
         "the map would be empty: no scan has a valid beam between [reader] min_range and [mapper] max_range");
 }
 
+std::shared_ptr<SubmapStore> makeStore(const Configuration& config, const OutputDirectory& out) {
+  return SubmapStore::create(bytesForSubmaps(config.joining), out.file(kSpillFile));
+}
+
 /** Joins and writes everything but metrics.json. */
 void joinAndWrite(const GridSubmaps& submaps, const JoinerChain& joiners, const OutputDirectory& out,
                   const Configuration& config, Reporter& reporter, RunSummary& summary) {
@@ -95,7 +99,8 @@ RunSummary mapRawlog(const std::string& log, const std::string& folder, bool ove
   if (summary.interrupted) return summary;
 
   addLogMetrics(summary.metrics, source.report());
-  joinAndWrite(readSubmaps(out.file(kSubmapFile)), joiners, out, config, reporter, summary);
+  joinAndWrite(readSubmaps(out.file(kSubmapFile), makeStore(config, out)), joiners, out, config, reporter,
+               summary);
   addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
   writeJson(out.file(kMetricsFile), summary.metrics);
   return summary;
@@ -123,8 +128,9 @@ RunSummary joinFile(const std::string& submap_file, const std::string& folder, b
   const StageTimer timer;
   RunSummary summary;
   const JoinerChain joiners = config.joinerChain();
-  const RecoveredSubmaps read = readUsableSubmaps(submap_file);
+  requireSubmaps(submap_file);  // before a folder is made for nothing
   const OutputDirectory out(folder, overwrite);
+  const RecoveredSubmaps read = readUsableSubmaps(submap_file, makeStore(config, out));
   summary.damaged = !read.damage.empty();
   if (summary.damaged) reporter.warning(read.damage + "; the submaps before it are joined");
   joinAndWrite(read.submaps, joiners, out, config, reporter, summary);

@@ -56,8 +56,12 @@ OutputDirectory openFolder(const std::string& folder, bool overwrite) {
   return out;
 }
 
-RecoveredSubmaps readUsableSubmaps(const std::string& file) {
-  RecoveredSubmaps read = recoverSubmaps(file);
+void requireSubmaps(const std::string& file) {
+  if (!SubmapLogReader(file).next()) throw InputError(fmt::format("{}: holds no submaps", file));
+}
+
+RecoveredSubmaps readUsableSubmaps(const std::string& file, const std::shared_ptr<SubmapStore>& store) {
+  RecoveredSubmaps read = recoverSubmaps(file, store);
   if (read.submaps.empty())
     throw InputError(read.damage.empty() ? fmt::format("{}: holds no submaps", file) : read.damage);
   return read;

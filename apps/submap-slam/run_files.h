@@ -4,6 +4,7 @@
 #include <submap_slam/output/output_directory.h>
 #include <submap_slam/rawlog/submap_log.h>
 
+#include <memory>
 #include <string>
 
 #include "configuration.h"
@@ -12,6 +13,7 @@
 namespace submap_slam {
 
 constexpr const char* kSubmapFile = "submaps.rawlog";
+constexpr const char* kSpillFile = "submaps.spill";  ///< of the SubmapStore; gone when the run ends
 constexpr const char* kMetricsFile =
     "metrics.json";  ///< written last: a folder that has it holds a finished run
 
@@ -28,8 +30,11 @@ SubmapLogWriter openSubmapFile(const std::string& file, const std::string& log, 
 /** The folder of results; one that holds an unfinished run is taken to finish it. */
 OutputDirectory openFolder(const std::string& folder, bool overwrite);
 
+/** Throws InputError unless the file begins with a submap. */
+void requireSubmaps(const std::string& file);
+
 /** The submaps of a file, up to the first damage if there is one (see RecoveredSubmaps::damage). Throws
  * InputError if the file holds none. */
-RecoveredSubmaps readUsableSubmaps(const std::string& file);
+RecoveredSubmaps readUsableSubmaps(const std::string& file, const std::shared_ptr<SubmapStore>& store);
 
 }  // namespace submap_slam

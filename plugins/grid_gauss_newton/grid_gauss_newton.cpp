@@ -1,5 +1,6 @@
 #include "grid_gauss_newton.h"
 
+#include <fmt/format.h>
 #include <submap_slam/core/errors.h>
 
 #include <algorithm>
@@ -23,15 +24,13 @@ SolverKind solverNamed(const std::string& name) {
   return name == "explicit_pose_only" ? SolverKind::kExplicitPoseOnly : SolverKind::kPoseOnly;
 }
 
-void requireEqualResolutions(const GridSubmaps& submaps) {
-  const double first = submaps.front()->resolution();
-  for (const auto& submap : submaps) {
-    const double other = submap->resolution();
-    if (std::abs(other - first) > 1e-6 * first)
-      throw InputError("submap " + std::to_string(submap->id) + " has cells of " + std::to_string(other) +
-                       " m; expected " + std::to_string(first) + " m as in submap " +
-                       std::to_string(submaps.front()->id));
-  }
+/** Nothing if all submaps have cells of one size. */
+std::string describeResolutions(const GridSubmaps& submaps, const std::vector<int>& halvings) {
+  const auto finer = std::count_if(halvings.begin(), halvings.end(), [](int n) { return n > 0; });
+  if (finer == 0) return "";
+  const auto coarsest = std::find(halvings.begin(), halvings.end(), 0) - halvings.begin();
+  return fmt::format("{} submaps with smaller cells were summed up to cells of {:g} m", finer,
+                     submaps[static_cast<std::size_t>(coarsest)]->resolution());
 }
 
 Frames meansOf(const std::vector<mrpt::poses::CPosePDFGaussian>& frames) {
@@ -115,12 +114,10 @@ CoarseToFineOptions GridGaussNewton::options() const {
   return o;
 }
 
-int GridGaussNewton::finestLevel(const GridSubmaps& submaps) const {
+int GridGaussNewton::finestLevel(const GridSubmaps& submaps, const std::vector<int>& halvings) const {
   double cells = 0;
-  for (const auto& submap : submaps) {
-    const auto packed = submap->packedEvidence();
-    cells += static_cast<double>(packed ? packed->storedCells() : submap->evidence.observedCells());
-  }
+  for (std::size_t i = 0; i < submaps.size(); ++i)
+    cells += static_cast<double>(submaps[i]->evidenceSummary().stored_cells) / std::pow(4, halvings[i]);
   int level = finest_level_;
   for (cells /= std::pow(4, level); cells > max_cells_; cells /= 4) ++level;
   return level;
@@ -128,7 +125,7 @@ int GridGaussNewton::finestLevel(const GridSubmaps& submaps) const {
 
 JoinedMap GridGaussNewton::join(const GridSubmaps& submaps, const JoinedMap& initial,
                                 const ProgressCallback& progress) const {
-  requireEqualResolutions(submaps);
+  const std::vector<int> halvings = halvingsToCoarsest(submaps);
   JoinedMap joined;
   joined.frames = initial.frames;
   joined.constraints = initial.constraints;
@@ -147,7 +144,7 @@ JoinedMap GridGaussNewton::join(const GridSubmaps& submaps, const JoinedMap& ini
   };
   const bool as_published = jacobian_ == "paper" || coarse_jacobian_ == "paper";
   const double background = as_published ? 0 : backgroundOf(submaps);
-  const auto pyramid = buildPyramid(submaps, {finestLevel(submaps), levels_, background});
+  const auto pyramid = buildPyramid(submaps, {finestLevel(submaps, halvings), levels_, background});
   const CoarseToFineResult result =
       joinCoarseToFine(pyramid, meansOf(initial.frames),
                        ConstraintPrior(initial.constraints, submaps, prior_weight_), options(), report);
@@ -158,7 +155,8 @@ JoinedMap GridGaussNewton::join(const GridSubmaps& submaps, const JoinedMap& ini
   if (result.status == JoinStatus::kNothingToJoin || result.status == JoinStatus::kFailed) return joined;
   const std::vector<uint32_t> ids = idsOf(submaps);
   for (const std::string& remark :
-       {describeGroups(result.groups, ids), describeOpen(result.open_directions, ids)})
+       {describeResolutions(submaps, halvings), describeGroups(result.groups, ids),
+        describeOpen(result.open_directions, ids)})
     if (!remark.empty()) joined.reason += "; " + remark;
   for (std::size_t i = 0; i < joined.frames.size(); ++i) {
     joined.frames[i].mean = mrpt::poses::CPose2D(result.frames[i]);

@@ -23,7 +23,7 @@ class GridGaussNewton : public SubmapJoiner {
   void describe(ParameterTable& table) override;
   void validate() const override;
 
-  /** Throws InputError if the submaps' resolutions differ. */
+  /** Throws InputError if the submaps' cells differ by anything else than powers of two. */
   JoinedMap join(const GridSubmaps& submaps, const JoinedMap& initial,
                  const ProgressCallback& progress) const override;
 
@@ -31,7 +31,7 @@ class GridGaussNewton : public SubmapJoiner {
   grid_joining::CoarseToFineOptions options() const;
 
   /** finest_level, or the next coarser one where the evidence has at most max_cells cells. */
-  int finestLevel(const GridSubmaps& submaps) const;
+  int finestLevel(const GridSubmaps& submaps, const std::vector<int>& halvings) const;
 
   std::string solver_ = "pose_only", jacobian_ = "variable_projection", coarse_jacobian_ = "surface";
   int levels_ = 5, finest_level_ = 0, max_iterations_ = 40;

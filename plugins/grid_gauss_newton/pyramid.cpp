@@ -1,8 +1,11 @@
 #include "pyramid.h"
 
+#include <fmt/format.h>
+#include <submap_slam/core/errors.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -157,24 +160,40 @@ EvidenceSample EvidenceLevel::sample(double column, double row) const {
 }
 
 double backgroundOf(const GridSubmaps& submaps) {
-  std::vector<double> least(submaps.size(), std::numeric_limits<double>::infinity());
-  tbb::parallel_for(std::size_t{0}, submaps.size(), [&](std::size_t i) {
-    const LoadedEvidence grid(*submaps[i]);
-    auto log_odds = grid->log_odds.begin();
-    for (const float hits : grid->hits.data()) {
-      const double sum = static_cast<double>(*log_odds++);
-      if (hits > 0) least[i] = std::min(least[i], sum / static_cast<double>(hits));
-    }
-  });
-  const double all = least.empty() ? 0 : *std::min_element(least.begin(), least.end());
-  return std::isfinite(all) ? all : 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& submap : submaps) {
+    const EvidenceSummary summary = submap->evidenceSummary();
+    if (summary.observed_cells > 0) least = std::min(least, summary.least_log_odds_per_hit);
+  }
+  return std::isfinite(least) ? least : 0;
+}
+
+std::vector<int> halvingsToCoarsest(const GridSubmaps& submaps) {
+  const auto isEmpty = [](const auto& submap) { return submap->evidenceSummary().stored_cells == 0; };
+  const GridSubmap* coarsest = nullptr;
+  for (const auto& submap : submaps)
+    if (!isEmpty(submap) && (!coarsest || submap->resolution() > coarsest->resolution()))
+      coarsest = submap.get();
+  std::vector<int> halvings;
+  for (const auto& submap : submaps) {
+    halvings.push_back(0);
+    if (isEmpty(submap)) continue;
+    const double exact = std::log2(coarsest->resolution() / submap->resolution());
+    if (std::abs(exact - std::round(exact)) > 1e-6)
+      throw InputError(fmt::format(
+          "submap {} has cells of {:g} m; expected {:g} m as in submap {}, or a half, a quarter, … of it",
+          submap->id, submap->resolution(), coarsest->resolution(), coarsest->id));
+    halvings.back() = static_cast<int>(std::lround(exact));
+  }
+  return halvings;
 }
 
 std::vector<EvidenceLevels> buildPyramid(const GridSubmaps& submaps, const PyramidShape& shape) {
+  const std::vector<int> halvings = halvingsToCoarsest(submaps);
   std::vector<EvidenceLevels> pyramid(static_cast<std::size_t>(shape.levels), EvidenceLevels(submaps.size()));
   tbb::parallel_for(std::size_t{0}, submaps.size(), [&](std::size_t i) {
     EvidenceRaster raster = EvidenceRaster::fromGrid(*LoadedEvidence(*submaps[i]), shape.background);
-    for (int k = 0; k < shape.finest_level; ++k) raster = raster.halved();
+    for (int k = 0; k < shape.finest_level + halvings[i]; ++k) raster = raster.halved();
     for (std::size_t k = 0; k < pyramid.size(); ++k) {
       EvidenceRaster coarser = k + 1 < pyramid.size() ? raster.halved() : EvidenceRaster();
       if (k > 0) raster.standardise();

@@ -127,6 +127,10 @@ using EvidenceLevels = std::vector<EvidenceLevel>;
  * Jacobian excepted); then free space is exactly zero and only cells near surfaces need work. */
 double backgroundOf(const GridSubmaps& submaps);
 
+/** How often the cells of each submap must be joined 2 × 2 to become as large as those of the coarsest one.
+ * Submaps without evidence count for nothing. Throws InputError where no power of two leads there. */
+std::vector<int> halvingsToCoarsest(const GridSubmaps& submaps);
+
 struct PyramidShape {
   int finest_level = 0;  ///< levels finer than that are not kept
   int levels = 1;
@@ -134,8 +138,8 @@ struct PyramidShape {
 };
 
 /** Levels finest_level … finest_level + levels − 1 of all submaps, finest first; level k has cells of 2ᵏ
- * times the submaps' size. The finest one keeps the plain sums of the paper's objective, the coarser ones are
- * standardised. */
+ * times the size of the coarsest submap's. Throws as halvingsToCoarsest. The finest one keeps the plain sums
+ * of the paper's objective, the coarser ones are standardised. */
 std::vector<EvidenceLevels> buildPyramid(const GridSubmaps& submaps, const PyramidShape& shape);
 
 }  // namespace submap_slam::grid_joining

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <optional>
 
 #include "frame_covariances.h"
@@ -85,7 +84,6 @@ struct PathCircle {
 
 /** What the search keeps of an older submap. */
 struct Known {
-  std::shared_ptr<const PackedEvidence> evidence;
   SubmapSurface surface;
   PathCircle path;
 };
@@ -147,13 +145,13 @@ class LoopSearch {
 
 void LoopSearch::closeLoops(std::size_t k) {
   const SubmapMatcher matcher(*submaps_[k], params_.matcher);
-  known_.push_back({packedEvidenceOf(*submaps_[k]), matcher.surface(), PathCircle(*submaps_[k])});
+  known_.push_back({matcher.surface(), PathCircle(*submaps_[k])});
   if (k < 2) return;
   const FrameCovariances covariances(result_.graph);
   std::vector<Task> tasks = tasksOf(k, covariances);
   tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t t) {
     const Known& older = known_[tasks[t].older];
-    tasks[t].match = matcher.match(*older.evidence, older.surface, tasks[t].window);
+    tasks[t].match = matcher.match(*submaps_[tasks[t].older], older.surface, tasks[t].window);
   });
   for (const Task& task : tasks) {
     if (!task.match) continue;

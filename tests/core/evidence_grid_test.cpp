@@ -7,6 +7,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include <utility>
+
 namespace submap_slam {
 namespace {
 
@@ -134,6 +136,19 @@ TEST(EvidenceGrid, KnowsWhetherItIsCropped) {
   *grid.hits.cellByIndex(7, 4) = 1;
   EXPECT_FALSE(grid.isCropped());
   EXPECT_TRUE(grid.cropped().isCropped());
+}
+
+TEST(EvidenceGrid, IsMovedWithoutACopy) {
+  EvidenceGrid grid(-1, 2, -1, 1, 0.1);
+  *grid.hits.cellByPos(1.25, -0.35) = 2;
+  const float* cells = grid.hits.data().data();
+  EvidenceGrid constructed = std::move(grid);
+  EXPECT_EQ(constructed.hits.data().data(), cells);
+  EvidenceGrid assigned(0, 5, 0, 5, 1);
+  assigned = std::move(constructed);
+  EXPECT_EQ(assigned.hits.data().data(), cells);
+  EXPECT_EQ(assigned.sizeX(), 30u);
+  EXPECT_EQ(*assigned.hits.cellByPos(1.25, -0.35), 2);
 }
 
 }  // namespace

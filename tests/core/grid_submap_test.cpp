@@ -81,8 +81,9 @@ TEST(GridSubmap, ReadsBackEveryMember) {
   EXPECT_EQ(back->id, 4u);
   EXPECT_EQ(back->first_frame, 5'000'000'000u);
   EXPECT_EQ(back->end_frame, 5'000'000'003u);
-  EXPECT_EQ(back->evidence.log_odds.data(), submap->evidence.log_odds.data());
-  EXPECT_EQ(back->evidence.hits.data(), submap->evidence.hits.data());
+  const LoadedEvidence evidence(*back);
+  EXPECT_EQ(evidence->log_odds.data(), submap->evidence.log_odds.data());
+  EXPECT_EQ(evidence->hits.data(), submap->evidence.hits.data());
   EXPECT_EQ(back->end_pose.mean.asTPose(), submap->end_pose.mean.asTPose());
   EXPECT_EQ(back->end_pose.cov.asEigen(), submap->end_pose.cov.asEigen());
   EXPECT_TRUE(back->has_successor);

@@ -257,6 +257,21 @@ TEST(FuseEvidence, AHugeMapIsMadeCoarserUnlessAskedFor) {
   EXPECT_EQ(fuseEvidence(submaps, {gaussian({}), gaussian({60, 50, 0})}, 0).resolution(), 0.1);
 }
 
+TEST(FuseEvidence, AMapWithSeveralTilesHasNoSeam) {
+  auto far = emptySubmap(), here = emptySubmap();
+  set(*here, 0.05, 0.05, 1, 1);
+  const auto value = [](int x, int y) { return static_cast<float>(1 + x + 20 * y); };
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 20; ++x) set(*far, -0.95 + 0.1 * x, -0.95 + 0.1 * y, value(x, y), 2);
+  // The first tile ends 1024 cells from the left edge of the map, in the middle of the far submap.
+  const TPose2D frame(101.3, 0, 0);
+  const EvidenceGrid map = fuseEvidence({here, far}, {gaussian({0, 0, 0}), gaussian(frame)}, 0.1);
+  EXPECT_EQ(map.observedCells(), 401u);
+  for (int y = 0; y < 20; ++y)
+    for (int x = 0; x < 20; ++x)
+      EXPECT_NEAR(logOddsAt(map, frame.x - 0.95 + 0.1 * x, -0.95 + 0.1 * y), value(x, y), 1e-3);
+}
+
 TEST(FuseEvidence, NothingObservedGivesNoObservedCell) {
   EXPECT_EQ(fuseEvidence({emptySubmap()}, {gaussian({0, 0, 0})}, 0.1).observedCells(), 0u);
   EXPECT_EQ(fuseEvidence({}, {}, 0.1).observedCells(), 0u);

@@ -46,6 +46,64 @@ TEST(PackedEvidence, UnpacksToTheSameGrid) {
   expectSameGrid(PackedEvidence(unknown).unpacked(), unknown);
 }
 
+TEST(PackedEvidence, ReadsBackWhatItWrote) {
+  for (const EvidenceGrid& grid : {sparseGrid(), EvidenceGrid(-1, 1, -1, 1, 0.1)}) {
+    mrpt::io::CMemoryStream stream;
+    auto archive = mrpt::serialization::archiveFrom(stream);
+    PackedEvidence(grid).writeTo(archive);
+    stream.Seek(0);
+    expectSameGrid(PackedEvidence::readFrom(archive).unpacked(), grid);
+  }
+}
+
+TEST(PackedEvidence, RefusesDamagedLimitsAndBlocks) {
+  mrpt::io::CMemoryStream stream;
+  auto archive = mrpt::serialization::archiveFrom(stream);
+  PackedEvidence(sparseGrid()).writeTo(archive);
+  const std::string whole(static_cast<const char*>(stream.getRawBufferData()), stream.getTotalBytesCount());
+  const auto readDamaged = [&](std::size_t byte) {
+    std::string bytes = whole;
+    bytes[byte] = static_cast<char>(bytes[byte] ^ 0x40);
+    mrpt::io::CMemoryStream damaged;
+    damaged.Write(bytes.data(), bytes.size());
+    damaged.Seek(0);
+    auto in = mrpt::serialization::archiveFrom(damaged);
+    PackedEvidence::readFrom(in);
+  };
+  const std::size_t resolution = 4 * 8 + 7, columns = 5 * 8, blocks = columns + 8, position = blocks + 4;
+  for (const std::size_t byte : {resolution, columns, blocks + 2, position, position + 3})
+    EXPECT_THROW(readDamaged(byte), std::runtime_error) << byte;
+}
+
+TEST(PackedEvidence, VisitsEachObservedCellOnce) {
+  const EvidenceGrid grid = sparseGrid();
+  std::size_t visits = 0;
+  PackedEvidence(grid).forEachObserved([&](int cx, int cy, float log_odds, float hits) {
+    ++visits;
+    EXPECT_EQ(*grid.log_odds.cellByIndex(static_cast<unsigned>(cx), static_cast<unsigned>(cy)), log_odds);
+    EXPECT_EQ(*grid.hits.cellByIndex(static_cast<unsigned>(cx), static_cast<unsigned>(cy)), hits);
+  });
+  EXPECT_EQ(visits, grid.observedCells());
+}
+
+TEST(PackedEvidence, CopiesOnlyWhatLiesInside) {
+  EvidenceGrid to(0, 1, 0, 1, 0.1);
+  PackedEvidence(sparseGrid()).copyTo(to, -7, -3);
+  EXPECT_EQ(to.observedCells(), 3u) << "cells (7, 3), (8, 3) and (8, 8)";
+  EXPECT_EQ(*to.hits.cellByIndex(0, 0), 2.0f);
+  EXPECT_EQ(*to.hits.cellByIndex(1, 5), 4.0f);
+}
+
+TEST(EvidenceSummary, SaysWhatIsThere) {
+  const EvidenceSummary summary = summaryOf(PackedEvidence(sparseGrid()));
+  EXPECT_EQ(summary.columns, 31);
+  EXPECT_EQ(summary.rows, 23);
+  EXPECT_NEAR(summary.x_min, -1.2, 1e-12);
+  EXPECT_EQ(summary.observed_cells, 6u);
+  EXPECT_NEAR(summary.least_log_odds_per_hit, -0.37, 1e-6);
+  EXPECT_EQ(summaryOf(PackedEvidence(EvidenceGrid())).least_log_odds_per_hit, 0);
+}
+
 TEST(PackedEvidence, GivesCellsAndKnowsWhatALookUpReaches) {
   const EvidenceGrid grid = sparseGrid();
   const PackedEvidence packed(grid);
@@ -87,10 +145,10 @@ TEST(UnloadedSubmap, KeepsItsEvidenceForEveryReader) {
 
 TEST(UnloadedSubmap, GivesWhatItKeepsAndALoadedOneIsPacked) {
   const auto submap = submapWith(sparseGrid());
-  expectSameGrid(packedEvidenceOf(*submap)->unpacked(), sparseGrid());
+  expectSameGrid(submap->packedEvidence()->unpacked(), sparseGrid());
   EXPECT_TRUE(submap->evidenceIsLoaded()) << "packing leaves it loaded";
   submap->unload();
-  EXPECT_EQ(packedEvidenceOf(*submap), submap->packedEvidence()) << "no second copy";
+  EXPECT_EQ(submap->packedEvidence(), submap->packedEvidence()) << "no second copy";
   EXPECT_FALSE(submap->evidenceIsLoaded());
 }
 

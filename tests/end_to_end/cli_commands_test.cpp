@@ -116,6 +116,21 @@ TEST_F(CliTest, ResultsAreTheSameBytesForAnyNumberOfThreads) {
   expectSameFiles(reproducibleResults(path("one")), reproducibleResults(path("three")));
 }
 
+TEST_F(CliTest, ResultsAreTheSameBytesForAnyMemory) {
+  succeed({"map", log("loop.rawlog"), "-o", path("none"), "-q", "--memory", "300MB"});  // keeps no submap
+  succeed({"join", path("none/submaps.rawlog"), "-o", path("all"), "-q", "--memory", "2GB"});
+  for (const char* file : {"map.pgm", "map.png", "map.gridmap.gz", "map.simplemap", "map.3Dscene",
+                           "trajectory.tum", "graph.g2o", "constraints.csv"})
+    EXPECT_TRUE(contentOf(path("none/") + file) == contentOf(path("all/") + file)) << file;
+  EXPECT_FALSE(std::filesystem::exists(path("all/submaps.spill")));
+}
+
+TEST_F(CliTest, RefusesAnImpossibleMemory) {
+  expectRefused(run({"map", log("loop.rawlog"), "-o", path("out"), "--memory", "10MB"}), "memory");
+  expectRefused(run({"map", log("loop.rawlog"), "-o", path("out"), "--memory", "much"}), "--memory");
+  EXPECT_FALSE(std::filesystem::exists(path("out")));
+}
+
 TEST_F(CliTest, EffectiveConfigurationRepeatsTheRun) {
   succeed(quickly(
       {"map", log("room.rawlog"), "-o", path("first"), "--seed", "7", "--set", "mapper.max_range=6"}));

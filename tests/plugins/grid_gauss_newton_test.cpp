@@ -262,15 +262,27 @@ TEST_F(GridGaussNewtonPlugin, GroupsWithoutLinkAreJoinedEachForItself) {
   EXPECT_THAT(joined.reason, ::testing::HasSubstr("{0-1} {2-3}"));
 }
 
-TEST_F(GridGaussNewtonPlugin, DifferentResolutionsAreRefused) {
+TEST_F(GridGaussNewtonPlugin, JoinsSubmapsWithCellsOfHalfTheSize) {
+  const PoseList truth{{0, 0, 0}, {0.8, 0.3, 0.3}, {-0.4, 0.5, -0.2}};
+  const GridSubmaps submaps{renderSubmap(testing::room(), truth[0], 4, 0.1),
+                            renderSubmap(testing::room(), truth[1], 4, 0.05),
+                            renderSubmap(testing::room(), truth[2], 4, 0.025)};
+  const JoinedMap joined = join(submaps, {truth[0], truth[1] + TPose2D(0.2, -0.1, 0.03), truth[2]});
+  EXPECT_EQ(joined.status, JoinStatus::kConverged) << joined.reason;
+  EXPECT_LT(distance(frameOf(joined, 1), truth[1]), 0.01);
+  EXPECT_LT(distance(frameOf(joined, 2), truth[2]), 0.01);
+  EXPECT_THAT(joined.reason,
+              ::testing::HasSubstr("2 submaps with smaller cells were summed up to cells of 0.1 m"));
+}
+
+TEST_F(GridGaussNewtonPlugin, ResolutionsThatDoNotFitAreRefused) {
   const GridSubmaps submaps{renderSubmap(testing::room(), {0, 0, 0}, 3, 0.1),
-                            renderSubmap(testing::room(), {0, 0, 0}, 3, 0.05)};
+                            renderSubmap(testing::room(), {0, 0, 0}, 3, 0.08)};
   try {
     join(submaps, {{0, 0, 0}, {0, 0, 0}});
     FAIL() << "no error";
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("has cells of 0.05"));
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("expected 0.1"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("has cells of 0.08 m; expected 0.1 m"));
   }
 }
 

@@ -1,5 +1,6 @@
 #include "grid_gauss_newton/pyramid.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "synthetic_submaps.h"
@@ -134,6 +135,18 @@ TEST(Pyramid, IsTheSameFromUnloadedSubmaps) {
   const auto after = buildPyramid(submaps, {0, 1, 0});
   EXPECT_FALSE(submaps[0]->evidenceIsLoaded());
   EXPECT_EQ(before[0][0].sample(7.3, 5.6).log_odds, after[0][0].sample(7.3, 5.6).log_odds);
+}
+
+TEST(Pyramid, FinerSubmapsKeepTheirSums) {
+  const GridSubmaps submaps{testing::roughSubmap(1, 3, 2, 0.1), testing::roughSubmap(2, 3, 2, 0.05)};
+  EXPECT_THAT(halvingsToCoarsest(submaps), ::testing::ElementsAre(0, 1));
+  const EvidenceLevels level = buildPyramid(submaps, {0, 1, 0}).front();
+  EXPECT_NEAR(level[1].resolution(), 0.1, 1e-12);
+  double before = 0, after = 0;
+  for (const float hits : submaps[1]->evidence.hits.data()) before += static_cast<double>(hits);
+  for (int row = 0; row < 25; ++row)
+    for (int column = 0; column < 35; ++column) after += level[1].sample(column, row).hits;
+  EXPECT_NEAR(after, before, 1e-3);
 }
 
 }  // namespace

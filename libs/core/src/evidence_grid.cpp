@@ -57,6 +57,14 @@ void readCells(mrpt::serialization::CArchive& in, Grid& grid) {
 
 }  // namespace
 
+void EvidenceLayer::swap(EvidenceLayer& other) {
+  std::swap(m_map, other.m_map);
+  std::swap(m_x_min, other.m_x_min), std::swap(m_x_max, other.m_x_max);
+  std::swap(m_y_min, other.m_y_min), std::swap(m_y_max, other.m_y_max);
+  std::swap(m_resolution, other.m_resolution);
+  std::swap(m_size_x, other.m_size_x), std::swap(m_size_y, other.m_size_y);
+}
+
 EvidenceGrid::EvidenceGrid() : EvidenceGrid(0, 1, 0, 1, 1) {}
 
 EvidenceGrid::EvidenceGrid(double x_min, double x_max, double y_min, double y_max, double resolution)

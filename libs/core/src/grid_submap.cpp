@@ -8,12 +8,11 @@
 #include <mrpt/poses/CPose3D.h>
 #include <mrpt/serialization/CArchive.h>
 #include <mrpt/serialization/stl_serialization.h>
-#include <submap_slam/core/errors.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
-#include <new>
 #include <ostream>
 
 IMPLEMENTS_SERIALIZABLE(GridSubmap, mrpt::obs::CObservation, submap_slam)
@@ -35,13 +34,13 @@ TPose2D readPose(CArchive& in) {
   return p;
 }
 
-void writeNode(CArchive& out, const SubmapNode& node) {
+void writeNode(CArchive& out, const SubmapNode& node, const SubmapScans& scans) {
   out << node.stamp;
   writePose(out, node.pose);
   out << static_cast<uint8_t>(node.odometry.has_value());
   if (node.odometry) writePose(out, *node.odometry);
-  out << static_cast<uint32_t>(node.scans.size());
-  for (const auto& scan : node.scans) out << *scan;
+  out << static_cast<uint32_t>(scans.size());
+  for (const auto& scan : scans) out << *scan;
 }
 
 uint32_t readCount(CArchive& in) {
@@ -74,22 +73,50 @@ SubmapStatistics readStatistics(CArchive& in) {
 
 }  // namespace
 
-uint8_t GridSubmap::serializeGetVersion() const { return 0; }
+std::size_t SubmapBulk::bytes() const {
+  std::size_t sum = evidence->bytes() + scans.size() * sizeof(SubmapScans);
+  for (const SubmapScans& of_node : scans)
+    for (const auto& scan : of_node)
+      sum += sizeof(*scan) + scan->getScanSize() * (sizeof(float) + sizeof(int32_t) + sizeof(char));
+  return sum;
+}
+
+EvidenceSummary summaryOf(const PackedEvidence& evidence) {
+  EvidenceSummary summary;
+  summary.resolution = evidence.resolution();
+  summary.x_min = evidence.xMin(), summary.y_min = evidence.yMin();
+  summary.columns = evidence.sizeX(), summary.rows = evidence.sizeY();
+  summary.stored_cells = evidence.storedCells();
+  double least = std::numeric_limits<double>::infinity();
+  evidence.forEachObserved([&](int, int, float log_odds, float hits) {
+    ++summary.observed_cells;
+    least = std::min(least, static_cast<double>(log_odds) / static_cast<double>(hits));
+  });
+  if (summary.observed_cells > 0) summary.least_log_odds_per_hit = least;
+  return summary;
+}
+
+/** Version 0 held the evidence as a dense grid. */
+uint8_t GridSubmap::serializeGetVersion() const { return 1; }
 
 void GridSubmap::serializeTo(CArchive& out) const {
   out << sensorLabel << timestamp << id << first_frame << end_frame;
-  LoadedEvidence(*this)->writeTo(out);
+  packedEvidence()->writeTo(out);
+  const std::vector<SubmapScans> scans_of_nodes = scans();
   out << static_cast<uint32_t>(nodes.size());
-  for (const auto& node : nodes) writeNode(out, node);
+  for (std::size_t i = 0; i < nodes.size(); ++i) writeNode(out, nodes[i], scans_of_nodes[i]);
   out << end_pose << static_cast<uint8_t>(has_successor);
   writeStatistics(out, statistics);
 }
 
 void GridSubmap::serializeFrom(CArchive& in, uint8_t version) {
-  if (version != 0) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+  if (version > serializeGetVersion()) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
   in >> sensorLabel >> timestamp >> id >> first_frame >> end_frame;
-  packed_.reset();
-  evidence = EvidenceGrid::readFrom(in);
+  packed_ = std::make_shared<const PackedEvidence>(version == 0 ? PackedEvidence(EvidenceGrid::readFrom(in))
+                                                                : PackedEvidence::readFrom(in));
+  summary_ = summaryOf(*packed_);
+  source_.reset();
+  freeGrid();
   nodes.clear();
   for (uint32_t n = readCount(in); n > 0; --n) nodes.push_back(readNode(in));
   in >> end_pose;
@@ -97,30 +124,56 @@ void GridSubmap::serializeFrom(CArchive& in, uint8_t version) {
   statistics = readStatistics(in);
 }
 
+void GridSubmap::freeGrid() const {
+  evidence = EvidenceGrid();
+  loaded_ = false;
+}
+
 void GridSubmap::load() const {
-  if (!packed_) return;
-  evidence = packed_->unpacked();
+  if (loaded_) return;
+  evidence = packedEvidence()->unpacked();
   packed_.reset();
+  loaded_ = true;
 }
 
 void GridSubmap::unload() const {
-  if (packed_) return;
-  packed_ = std::make_shared<const PackedEvidence>(evidence);
-  // Assigning an empty grid would keep the memory: MRPT's grids are copied, never moved.
-  std::destroy_at(&evidence);
-  new (&evidence) EvidenceGrid();
+  if (!loaded_) return;
+  const auto packed = std::make_shared<const PackedEvidence>(evidence);
+  summary_ = summaryOf(*packed);
+  if (!source_) packed_ = packed;
+  freeGrid();
+}
+
+void GridSubmap::storeAway(std::shared_ptr<const SubmapBulkSource> source) {
+  source_ = std::move(source);
+  unload();
+  packed_.reset();
+  for (SubmapNode& node : nodes) {
+    node.scans_are_stored_away = node.isKey();
+    node.scans = {};
+  }
+}
+
+std::shared_ptr<const PackedEvidence> GridSubmap::packedEvidence() const {
+  if (loaded_) return std::make_shared<const PackedEvidence>(evidence);
+  return packed_ ? packed_ : source_->bulk()->evidence;
+}
+
+std::vector<SubmapScans> GridSubmap::scans() const {
+  if (source_) return source_->bulk()->scans;
+  std::vector<SubmapScans> scans;
+  for (const SubmapNode& node : nodes) scans.push_back(node.scans);
+  return scans;
 }
 
 double GridSubmap::radius() const {
-  const LoadedEvidence loaded(*this);
-  const auto& g = loaded->hits;
+  const auto packed = packedEvidence();
   double r2 = 0;
-  for (std::size_t cy = 0; cy < g.getSizeY(); ++cy)
-    for (std::size_t cx = 0; cx < g.getSizeX(); ++cx)
-      if (*g.cellByIndex(static_cast<unsigned>(cx), static_cast<unsigned>(cy)) > 0) {
-        const double x = g.idx2x(static_cast<int>(cx)), y = g.idx2y(static_cast<int>(cy));
-        r2 = std::max(r2, x * x + y * y);
-      }
+  packed->forEachObserved([&](int cx, int cy, float, float) {
+    const double x = packed->xMin() + (cx + 0.5) * packed->resolution();
+    const double y = packed->yMin() + (cy + 0.5) * packed->resolution();
+    r2 = std::max(r2, x * x + y * y);
+  });
   return std::sqrt(r2);
 }
 
@@ -144,7 +197,7 @@ void GridSubmap::setSensorPose(const mrpt::poses::CPose3D&) {
 
 void GridSubmap::getDescriptionAsText(std::ostream& out) const {
   CObservation::getDescriptionAsText(out);
-  const LoadedEvidence grid(*this);
+  const EvidenceSummary grid = evidenceSummary();
   const auto end = end_pose.mean;
   out << fmt::format(
       "\nGrid submap {}\n"
@@ -156,8 +209,8 @@ void GridSubmap::getDescriptionAsText(std::ostream& out) const {
       "  match score       : mean {:.3f}, min {:.3f}, max {:.3f}\n"
       "  filter            : {} rescues, {} ambiguous scans, at most {} particles, {} resamplings\n"
       "  closed because    : {}\n",
-      id, first_frame, end_frame, nodes.size(), keyNodes(), pathLength(), grid->sizeX(), grid->sizeY(),
-      grid->resolution(), grid->observedCells(), end.x(), end.y(), mrpt::RAD2DEG(end.phi()),
+      id, first_frame, end_frame, nodes.size(), keyNodes(), pathLength(), grid.columns, grid.rows,
+      grid.resolution, grid.observed_cells, end.x(), end.y(), mrpt::RAD2DEG(end.phi()),
       std::sqrt(end_pose.cov(0, 0)), std::sqrt(end_pose.cov(1, 1)),
       mrpt::RAD2DEG(std::sqrt(end_pose.cov(2, 2))), statistics.match_score_mean, statistics.match_score_min,
       statistics.match_score_max, statistics.rescues, statistics.ambiguous_scans, statistics.max_particles,
@@ -169,10 +222,9 @@ std::string GridSubmap::exportTxtHeader() const {
 }
 
 std::string GridSubmap::exportTxtDataRow() const {
-  const LoadedEvidence grid(*this);
   return fmt::format("{} {} {} {} {} {:.4f} {} {:.9g} {:.9g} {:.9g}", id, first_frame, end_frame,
-                     nodes.size(), keyNodes(), pathLength(), grid->observedCells(), end_pose.mean.x(),
-                     end_pose.mean.y(), end_pose.mean.phi());
+                     nodes.size(), keyNodes(), pathLength(), evidenceSummary().observed_cells,
+                     end_pose.mean.x(), end_pose.mean.y(), end_pose.mean.phi());
 }
 
 void GridSubmap::getVisualizationInto(mrpt::opengl::CSetOfObjects& out) const {
@@ -188,11 +240,6 @@ void GridSubmap::getVisualizationInto(mrpt::opengl::CSetOfObjects& out) const {
   }
   out.insert(path);
   out.insert(mrpt::opengl::stock_objects::CornerXYZSimple(1.0f));
-}
-
-std::shared_ptr<const PackedEvidence> packedEvidenceOf(const GridSubmap& submap) {
-  if (auto kept = submap.packedEvidence()) return kept;
-  return std::make_shared<const PackedEvidence>(submap.evidence);
 }
 
 }  // namespace submap_slam

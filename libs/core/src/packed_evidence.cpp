@@ -1,27 +1,40 @@
 #include <submap_slam/core/packed_evidence.h>
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 
 namespace submap_slam {
+namespace {
 
-PackedEvidence::PackedEvidence(const EvidenceGrid& grid)
-    : x_min_(grid.hits.getXMin()),
-      y_min_(grid.hits.getYMin()),
-      x_max_(grid.hits.getXMax()),
-      y_max_(grid.hits.getYMax()),
-      resolution_(grid.resolution()),
-      nx_(grid.sizeX()),
-      ny_(grid.sizeY()),
+/** Grids beyond this are taken for a damaged file. */
+constexpr uint32_t kMaxSide = 1u << 16;
+
+}  // namespace
+
+PackedEvidence::PackedEvidence(double x_min, double x_max, double y_min, double y_max, double resolution,
+                               std::size_t nx, std::size_t ny)
+    : x_min_(x_min),
+      y_min_(y_min),
+      x_max_(x_max),
+      y_max_(y_max),
+      resolution_(resolution),
+      nx_(nx),
+      ny_(ny),
       columns_(static_cast<int>((nx_ + kMask) / kSide)),
       rows_(static_cast<int>((ny_ + kMask) / kSide)),
       numbers_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), -1),
-      reach_(static_cast<std::size_t>(columns_ + 1) * static_cast<std::size_t>(rows_ + 1), 0) {
+      reach_(static_cast<std::size_t>(columns_ + 1) * static_cast<std::size_t>(rows_ + 1), 0) {}
+
+PackedEvidence::PackedEvidence(const EvidenceGrid& grid)
+    : PackedEvidence(grid.hits.getXMin(), grid.hits.getXMax(), grid.hits.getYMin(), grid.hits.getYMax(),
+                     grid.resolution(), grid.sizeX(), grid.sizeY()) {
   for (int by = 0; by < rows_; ++by)
-    for (int bx = 0; bx < columns_; ++bx) addBlock(grid, bx, by);
+    for (int bx = 0; bx < columns_; ++bx) packBlock(grid, bx, by);
   cells_.shrink_to_fit();
 }
 
-void PackedEvidence::addBlock(const EvidenceGrid& grid, int bx, int by) {
+void PackedEvidence::packBlock(const EvidenceGrid& grid, int bx, int by) {
   Block block;
   bool observed = false;
   const auto x0 = static_cast<std::size_t>(bx * kSide), y0 = static_cast<std::size_t>(by * kSide);
@@ -32,7 +45,10 @@ void PackedEvidence::addBlock(const EvidenceGrid& grid, int bx, int by) {
       block.hits[to] = grid.hits.data()[from];
       observed = observed || block.hits[to] != 0 || block.log_odds[to] != 0;
     }
-  if (!observed) return;
+  if (observed) store(block, bx, by);
+}
+
+void PackedEvidence::store(const Block& block, int bx, int by) {
   numbers_[static_cast<std::size_t>(by) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(bx)] =
       static_cast<int32_t>(cells_.size());
   cells_.push_back(block);
@@ -44,19 +60,78 @@ void PackedEvidence::addBlock(const EvidenceGrid& grid, int bx, int by) {
 
 EvidenceGrid PackedEvidence::unpacked() const {
   EvidenceGrid grid(x_min_, x_max_, y_min_, y_max_, resolution_);
+  copyTo(grid, 0, 0);
+  return grid;
+}
+
+void PackedEvidence::copyTo(EvidenceGrid& grid, int column, int row) const {
+  const int width = static_cast<int>(grid.sizeX()), height = static_cast<int>(grid.sizeY());
   for (int by = 0; by < rows_; ++by)
     for (int bx = 0; bx < columns_; ++bx) {
       const Block* block = blockAt(bx, by);
       if (!block) continue;
-      const auto x0 = static_cast<std::size_t>(bx * kSide), y0 = static_cast<std::size_t>(by * kSide);
-      const std::size_t width = std::min<std::size_t>(kSide, nx_ - x0);
-      for (std::size_t y = 0; y < kSide && y0 + y < ny_; ++y) {
-        const auto to = static_cast<std::ptrdiff_t>((y0 + y) * nx_ + x0);
-        std::copy_n(block->log_odds.begin() + y * kSide, width, grid.log_odds.begin() + to);
-        std::copy_n(block->hits.begin() + y * kSide, width, grid.hits.begin() + to);
+      const int x0 = column + bx * kSide, y0 = row + by * kSide;
+      const int left = std::max(0, x0), right = std::min(width, x0 + kSide);
+      for (int y = std::max(0, y0); left < right && y < std::min(height, y0 + kSide); ++y) {
+        const auto to = static_cast<std::ptrdiff_t>(y) * width + left;
+        const auto from = (y - y0) * kSide + left - x0;
+        std::copy_n(block->log_odds.begin() + from, right - left, grid.log_odds.begin() + to);
+        std::copy_n(block->hits.begin() + from, right - left, grid.hits.begin() + to);
       }
     }
-  return grid;
+}
+
+std::size_t PackedEvidence::bytes() const {
+  return sizeof(*this) + cells_.capacity() * sizeof(Block) + numbers_.capacity() * sizeof(int32_t) +
+         reach_.capacity();
+}
+
+/** Positions of the stored blocks, row by row, in the order in which they are stored. */
+std::vector<uint32_t> PackedEvidence::storedPositions() const {
+  std::vector<uint32_t> positions;
+  positions.reserve(cells_.size());
+  for (std::size_t k = 0; k < numbers_.size(); ++k)
+    if (numbers_[k] >= 0) positions.push_back(static_cast<uint32_t>(k));
+  return positions;
+}
+
+void PackedEvidence::writeTo(mrpt::serialization::CArchive& out) const {
+  const std::vector<uint32_t> positions = storedPositions();
+  out << x_min_ << x_max_ << y_min_ << y_max_ << resolution_ << static_cast<uint32_t>(nx_)
+      << static_cast<uint32_t>(ny_) << static_cast<uint32_t>(positions.size());
+  if (positions.empty()) return;
+  out.WriteBufferFixEndianness(positions.data(), positions.size());
+  for (const Block& block : cells_) {
+    out.WriteBufferFixEndianness(block.log_odds.data(), block.log_odds.size());
+    out.WriteBufferFixEndianness(block.hits.data(), block.hits.size());
+  }
+}
+
+PackedEvidence PackedEvidence::readFrom(mrpt::serialization::CArchive& in) {
+  double x_min = 0, x_max = 0, y_min = 0, y_max = 0, resolution = 0;
+  uint32_t nx = 0, ny = 0, blocks = 0;
+  in >> x_min >> x_max >> y_min >> y_max >> resolution >> nx >> ny >> blocks;
+  const auto spans = [&](double min, double max, uint32_t cells) {
+    return cells > 0 && cells <= kMaxSide && std::abs((max - min) / resolution - cells) < 0.01;
+  };
+  if (!(resolution > 0) || !spans(x_min, x_max, nx) || !spans(y_min, y_max, ny))
+    throw std::runtime_error("evidence with implausible limits");
+  PackedEvidence packed(x_min, x_max, y_min, y_max, resolution, nx, ny);
+  if (blocks > packed.numbers_.size()) throw std::runtime_error("evidence with too many blocks");
+  if (blocks == 0) return packed;
+  std::vector<uint32_t> positions(blocks);
+  in.ReadBufferFixEndianness(positions.data(), positions.size());
+  packed.cells_.reserve(blocks);
+  for (std::size_t k = 0; k < blocks; ++k) {
+    if (positions[k] >= packed.numbers_.size() || (k > 0 && positions[k] <= positions[k - 1]))
+      throw std::runtime_error("evidence with blocks in the wrong places");
+    Block block;
+    in.ReadBufferFixEndianness(block.log_odds.data(), block.log_odds.size());
+    in.ReadBufferFixEndianness(block.hits.data(), block.hits.size());
+    const auto columns = static_cast<uint32_t>(packed.columns_);
+    packed.store(block, static_cast<int>(positions[k] % columns), static_cast<int>(positions[k] / columns));
+  }
+  return packed;
 }
 
 }  // namespace submap_slam

@@ -24,7 +24,7 @@ PosePrior loosePrior(const TPose2D& mean) {
 
 SubmapMatcher::SubmapMatcher(const GridSubmap& reference, const SubmapMatcherParams& params)
     : params_(params),
-      evidence_(packedEvidenceOf(reference)),
+      evidence_(reference.packedEvidence()),
       surfels_(surfelMapOf(reference, params.map)),
       surface_(surfaceOf(surfels_, params.surface)),
       pyramid_(*evidence_, params.pyramid),
@@ -45,7 +45,7 @@ const MatchResult& SubmapMatcher::better(const MatchResult& from_search,
   return same_place && from_centre.cost < from_search.cost ? from_centre : from_search;
 }
 
-std::optional<SubmapMatch> SubmapMatcher::match(const PackedEvidence& other, const SubmapSurface& surface,
+std::optional<SubmapMatch> SubmapMatcher::match(const GridSubmap& other, const SubmapSurface& surface,
                                                 const PoseWindow& window) const {
   const auto found = searchWindow(pyramid_, surface.sparse, window, params_.min_score, params_.rivals);
   if (!found) return std::nullopt;
@@ -58,7 +58,7 @@ std::optional<SubmapMatch> SubmapMatcher::match(const PackedEvidence& other, con
   match.rival_score = found->rival_score;
   const MapAgreement there = agreementOf(surface.dense, *evidence_, match.T_ref_other, params_.agreement);
   const MapAgreement back =
-      agreementOf(surface_.dense, other, TPose2D() - match.T_ref_other, params_.agreement);
+      agreementOf(surface_.dense, *other.packedEvidence(), TPose2D() - match.T_ref_other, params_.agreement);
   match.hit_share = std::max(there.hit_share, back.hit_share);
   match.agreement = std::min(there.agreement, back.agreement);
   return match;

@@ -32,11 +32,12 @@ LaserPoint pointOn(const Surfel& surfel) {
 SurfelMap surfelMapOf(const GridSubmap& submap, const SurfelMapParams& params) {
   constexpr double kNoLimit = 1e9;
   SurfelMap map(params);
-  for (const SubmapNode& node : submap.nodes) {
-    if (!node.isKey()) continue;
+  const std::vector<SubmapScans> scans = submap.scans();
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    if (scans[i].empty()) continue;
     Frame frame;
-    frame.scans = node.scans;
-    map.insert(toLaserPoints(frame, kNoLimit), node.pose);
+    frame.scans = scans[i];
+    map.insert(toLaserPoints(frame, kNoLimit), submap.nodes[i].pose);
   }
   return map;
 }

@@ -29,11 +29,12 @@ CPosePDFGaussian nodePose(const CPosePDFGaussian& frame, const SubmapNode& node)
 }
 
 void insertKeyNodes(const GridSubmap& submap, const CPosePDFGaussian& frame, mrpt::maps::CSimpleMap& map) {
-  for (const auto& node : submap.nodes) {
-    if (!node.isKey()) continue;
-    const auto scans = mrpt::obs::CSensoryFrame::Create();
-    for (const auto& scan : node.scans) scans->insert(scan);
-    map.insert(mrpt::poses::CPose3DPDFGaussian::Create(nodePose(frame, node)), scans);
+  const std::vector<SubmapScans> scans = submap.scans();
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    if (scans[i].empty()) continue;
+    const auto observations = mrpt::obs::CSensoryFrame::Create();
+    for (const auto& scan : scans[i]) observations->insert(scan);
+    map.insert(mrpt::poses::CPose3DPDFGaussian::Create(nodePose(frame, submap.nodes[i])), observations);
   }
 }
 

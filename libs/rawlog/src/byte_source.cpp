@@ -26,9 +26,14 @@ uint64_t sizeOfFile(const std::string& file) {
 
 }  // namespace
 
-ByteSource::ByteSource(const std::string& file)
-    : file_size_(sizeOfFile(file)), packed_(kBufferBytes), data_(kBufferBytes) {
+ByteSource::ByteSource(const std::string& file, uint64_t offset)
+    : file_size_(sizeOfFile(file)),
+      start_(offset),
+      file_position_(offset),
+      packed_(kBufferBytes),
+      data_(kBufferBytes) {
   file_.open(file, std::ios::binary);
+  file_.seekg(static_cast<std::streamoff>(offset));
   if (!file_) throw InputError(fmt::format("{}: cannot be opened: {}", file, std::strerror(errno)));
   refillPacked();
   gzip_ = packed_left_ >= 2 && packed_[0] == 0x1f && packed_[1] == 0x8b;

@@ -12,8 +12,9 @@ namespace submap_slam {
 /** The bytes of a file in order, unpacked if it is gzip (with any number of members). */
 class ByteSource {
  public:
-  /** Throws InputError if the file cannot be opened or is a folder. */
-  explicit ByteSource(const std::string& file);
+  /** @param offset byte of the file to start from; in gzip where a member begins
+   * Throws InputError if the file cannot be opened or is a folder. */
+  explicit ByteSource(const std::string& file, uint64_t offset = 0);
   ~ByteSource();
   ByteSource(const ByteSource&) = delete;
   ByteSource& operator=(const ByteSource&) = delete;
@@ -37,7 +38,7 @@ class ByteSource {
   uint64_t position() const { return position_; }
 
   /** Bytes of the file on disk used so far; in gzip up to one buffer ahead of position(). */
-  uint64_t filePosition() const { return gzip_ ? file_position_ - packed_left_ : position_; }
+  uint64_t filePosition() const { return gzip_ ? file_position_ - packed_left_ : start_ + position_; }
 
   bool isGzip() const { return gzip_; }
   uint64_t fileSize() const { return file_size_; }
@@ -52,7 +53,7 @@ class ByteSource {
   bool unpackBlock();
 
   std::ifstream file_;
-  uint64_t file_size_ = 0, file_position_ = 0, position_ = 0;
+  uint64_t file_size_ = 0, start_ = 0, file_position_ = 0, position_ = 0;
   bool gzip_ = false, in_member_ = false, truncated_ = false;
   std::vector<uint8_t> packed_, data_;
   std::size_t packed_left_ = 0, data_begin_ = 0, data_end_ = 0;

@@ -75,13 +75,19 @@ std::string unregisteredClassIn(const std::string& message) {
   return isClassName(class_name) ? class_name : "";
 }
 
+/** Whether MRPT refused an object because it knows only older versions of its class. */
+bool isNewerVersion(const std::string& message) {
+  return message.find("unknown serialization version") != std::string::npos;
+}
+
 std::string unknownClass(const std::string& name) {
   return fmt::format("holds class {}, which this program does not know and cannot skip", name);
 }
 
 }  // namespace
 
-ObjectStream::ObjectStream(const std::string& file) : file_(file), source_(file) {}
+ObjectStream::ObjectStream(const std::string& file, uint64_t offset)
+    : file_(file), source_(file, offset), valid_bytes_(offset) {}
 
 mrpt::serialization::CSerializable::Ptr ObjectStream::next() {
   while (!damage_) {
@@ -116,6 +122,12 @@ mrpt::serialization::CSerializable::Ptr ObjectStream::readObject() {
     if (!source_.damage().empty()) return fail(source_.damage(), source_.truncated());
     if (archive.ranOut())
       return fail(fmt::format("the file ends in the middle of a {}", header.class_name), true);
+    if (isNewerVersion(error.what()))
+      return fail(
+          fmt::format("the content of a {} makes no sense: only newer versions of the program know its "
+                      "format, or it is damaged",
+                      header.class_name),
+          false);
     const auto unknown = unregisteredClassIn(error.what());
     return fail(unknown.empty() ? fmt::format("the content of a {} makes no sense", header.class_name)
                                 : unknownClass(unknown),

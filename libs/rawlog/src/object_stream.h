@@ -14,8 +14,9 @@ namespace submap_slam {
 /** The serialized MRPT objects of a file, one after the other. */
 class ObjectStream {
  public:
-  /** Throws InputError if the file cannot be opened. */
-  explicit ObjectStream(const std::string& file);
+  /** Throws InputError if the file cannot be opened.
+   * @param offset byte of the file to start from: 0 or where an earlier stream said that it can be */
+  explicit ObjectStream(const std::string& file, uint64_t offset = 0);
 
   /** The next object; null at the end, or where damage() then says what is wrong. */
   mrpt::serialization::CSerializable::Ptr next();
@@ -28,6 +29,13 @@ class ObjectStream {
   /** Size of the front part of the file that ends with the last object returned, at the end of a gzip member;
    * it stays where it was while members hold more than one object. */
   uint64_t validBytes() const { return valid_bytes_; }
+
+  /** Byte of the file where the next object can be read on its own; empty if it shares a gzip member with the
+   * one before. */
+  std::optional<uint64_t> nextStart() const {
+    if (!at_member_end_) return std::nullopt;
+    return valid_bytes_;
+  }
 
   /** True if the file ends behind the last object, but without the proper end of its gzip member. */
   bool cutBehindLast();
@@ -43,7 +51,7 @@ class ObjectStream {
   std::string file_;
   ByteSource source_;
   uint64_t entries_ = 0, object_start_ = 0, valid_bytes_ = 0;
-  bool at_member_end_ = false;  ///< behind the last object
+  bool at_member_end_ = true;  ///< behind the last object
   std::optional<LogDamage> damage_;
 };
 

@@ -44,7 +44,7 @@ ResumeState newRun(const ResumeState& run) {
 }  // namespace
 
 struct SubmapLogReader::Impl {
-  explicit Impl(const std::string& name) : file(name), stream(name) {}
+  Impl(const std::string& name, uint64_t offset) : file(name), stream(name, offset), valid_bytes(offset) {}
 
   [[noreturn]] void fail(const std::string& what) const {
     throw InputError(fmt::format("{} (the {} submaps before it are valid)", what, submaps));
@@ -55,7 +55,8 @@ struct SubmapLogReader::Impl {
   uint64_t submaps = 0, valid_bytes = 0;
 };
 
-SubmapLogReader::SubmapLogReader(const std::string& file) : impl_(std::make_unique<Impl>(file)) {}
+SubmapLogReader::SubmapLogReader(const std::string& file, uint64_t offset)
+    : impl_(std::make_unique<Impl>(file, offset)) {}
 SubmapLogReader::~SubmapLogReader() = default;
 SubmapLogReader::SubmapLogReader(SubmapLogReader&&) noexcept = default;
 SubmapLogReader& SubmapLogReader::operator=(SubmapLogReader&&) noexcept = default;
@@ -78,33 +79,42 @@ GridSubmap::Ptr SubmapLogReader::next() {
 }
 
 uint64_t SubmapLogReader::validBytes() const { return impl_->valid_bytes; }
+std::optional<uint64_t> SubmapLogReader::nextStart() const { return impl_->stream.nextStart(); }
 double SubmapLogReader::fractionRead() const { return impl_->stream.fractionRead(); }
 
 namespace {
 
-/** All the rest of the file; grids are packed one by one, so that a long log fits into memory. */
-void readPacked(SubmapLogReader& reader, GridSubmaps& submaps) {
-  while (auto submap = reader.next()) {
-    submap->unload();
+/** All submaps of the file. */
+void readAll(const std::string& file, SubmapLogReader& reader, const std::shared_ptr<SubmapStore>& store,
+             GridSubmaps& submaps) {
+  for (;;) {
+    const auto start = reader.nextStart();
+    auto submap = reader.next();
+    if (!submap) return;
+    if (store && start) {
+      store->takeOver(*submap, {file, *start});
+    } else if (store) {
+      store->takeOver(*submap);
+    }
     submaps.push_back(std::move(submap));
   }
 }
 
 }  // namespace
 
-GridSubmaps readSubmaps(const std::string& file) {
+GridSubmaps readSubmaps(const std::string& file, const std::shared_ptr<SubmapStore>& store) {
   SubmapLogReader reader(file);
   GridSubmaps submaps;
-  readPacked(reader, submaps);
+  readAll(file, reader, store, submaps);
   if (submaps.empty()) throw InputError(fmt::format("{}: holds no submaps", file));
   return submaps;
 }
 
-RecoveredSubmaps recoverSubmaps(const std::string& file) {
+RecoveredSubmaps recoverSubmaps(const std::string& file, const std::shared_ptr<SubmapStore>& store) {
   SubmapLogReader reader(file);
   RecoveredSubmaps recovered;
   try {
-    readPacked(reader, recovered.submaps);
+    readAll(file, reader, store, recovered.submaps);
   } catch (const InputError& error) {
     recovered.damage = error.what();
   }

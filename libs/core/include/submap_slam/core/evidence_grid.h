@@ -4,7 +4,27 @@
 #include <mrpt/maps/COccupancyGridMap2D.h>
 #include <mrpt/serialization/CArchive.h>
 
+#include <utility>
+
 namespace submap_slam {
+
+/** MRPT's grid, which can be moved too: large maps are handed on without a second copy. */
+class EvidenceLayer : public mrpt::containers::CDynamicGrid<float> {
+ public:
+  using CDynamicGrid::CDynamicGrid;
+  EvidenceLayer(const EvidenceLayer&) = default;
+  EvidenceLayer(EvidenceLayer&& other) : EvidenceLayer(0, 1, 0, 1, 1) { swap(other); }
+  EvidenceLayer& operator=(const EvidenceLayer&) = default;
+  EvidenceLayer& operator=(EvidenceLayer&& other) {
+    EvidenceLayer taken(std::move(other));
+    swap(taken);
+    return *this;
+  }
+  ~EvidenceLayer() override = default;
+
+ private:
+  void swap(EvidenceLayer& other);
+};
 
 /** Un-saturated occupancy evidence on a regular grid.
  *
@@ -14,8 +34,8 @@ namespace submap_slam {
  * is unknown and has log_odds = 0. Both grids always have the same extent.
  */
 struct EvidenceGrid {
-  mrpt::containers::CDynamicGrid<float> log_odds;
-  mrpt::containers::CDynamicGrid<float> hits;
+  EvidenceLayer log_odds;
+  EvidenceLayer hits;
 
   /** An empty (1 × 1 cell) grid. */
   EvidenceGrid();

@@ -16,6 +16,8 @@
 
 namespace submap_slam {
 
+using SubmapScans = std::vector<mrpt::obs::CObservation2DRangeScan::Ptr>;
+
 /** One frame of the log, placed in the submap. */
 struct SubmapNode {
   mrpt::Clock::time_point stamp;
@@ -26,11 +28,42 @@ struct SubmapNode {
   /** T_odom_node, if the log has odometry there. */
   std::optional<mrpt::math::TPose2D> odometry;
 
-  /** The scans, kept for key nodes only (those inserted into the evidence); empty otherwise. */
-  std::vector<mrpt::obs::CObservation2DRangeScan::Ptr> scans;
+  /** The scans, kept for key nodes only (those inserted into the evidence); empty otherwise, and while they
+   * are stored away: whoever reads them takes GridSubmap::scans(). */
+  SubmapScans scans;
+  bool scans_are_stored_away = false;  ///< see GridSubmap::storeAway
 
-  bool isKey() const { return !scans.empty(); }
+  bool isKey() const { return scans_are_stored_away || !scans.empty(); }
 };
+
+/** What makes submaps large. */
+struct SubmapBulk {
+  std::shared_ptr<const PackedEvidence> evidence;  ///< never null
+  std::vector<SubmapScans> scans;                  ///< of each node
+
+  /** Memory it takes, roughly. */
+  std::size_t bytes() const;
+};
+
+/** Where the bulk of a submap is while the submap does not hold it itself. */
+class SubmapBulkSource {
+ public:
+  virtual ~SubmapBulkSource() = default;
+
+  /** The bulk, never null; any number of threads may ask. Throws InputError if it cannot be read. */
+  virtual std::shared_ptr<const SubmapBulk> bulk() const = 0;
+};
+
+/** What is known about the evidence of a submap without reading it. */
+struct EvidenceSummary {
+  double resolution = 0;              ///< m per cell
+  double x_min = 0, y_min = 0;        ///< left and lower edge of the grid, local map frame (m)
+  int columns = 0, rows = 0;          ///< cells
+  std::size_t stored_cells = 0;       ///< PackedEvidence::storedCells
+  std::size_t observed_cells = 0;     ///< those with hits > 0
+  double least_log_odds_per_hit = 0;  ///< of all observed cells; 0 if there are none
+};
+EvidenceSummary summaryOf(const PackedEvidence& evidence);
 
 /** How the submap came about, for reports. */
 struct SubmapStatistics {
@@ -77,21 +110,35 @@ class GridSubmap : public mrpt::obs::CObservation, public mrpt::opengl::Visualiz
 
   std::size_t keyNodes() const;
 
-  /** False after unload(), until load(). */
-  bool evidenceIsLoaded() const { return !packed_; }
+  /** True for a submap that was made; false for one that was read, until load(), and after unload(). */
+  bool evidenceIsLoaded() const { return loaded_; }
 
   /** Cell size of the evidence, loaded or not (m). */
-  double resolution() const { return packed_ ? packed_->resolution() : evidence.resolution(); }
+  double resolution() const { return loaded_ ? evidence.resolution() : summary_.resolution; }
 
-  /** What unload() keeps; null while the evidence is loaded. */
-  std::shared_ptr<const PackedEvidence> packedEvidence() const { return packed_; }
+  /** Reads nothing from where the evidence is stored away. */
+  EvidenceSummary evidenceSummary() const { return loaded_ ? summaryOf(*packedEvidence()) : summary_; }
+
+  /** The evidence, wherever it is; never null. Throws InputError if it is stored away and cannot be read. */
+  std::shared_ptr<const PackedEvidence> packedEvidence() const;
+
+  /** The scans of each node, wherever they are. Throws as packedEvidence(). */
+  std::vector<SubmapScans> scans() const;
+
+  /** Evidence and scans as storeAway() expects to get them back. */
+  SubmapBulk bulk() const { return {packedEvidence(), scans()}; }
+
+  /** Drops evidence and scans, which come from `source` from now on. Not while another thread uses this
+   * submap. */
+  void storeAway(std::shared_ptr<const SubmapBulkSource> source);
 
   // mrpt::obs::CObservation
   /** Makes `evidence` the grid again that it was before unload(). As unload(), it must not run while another
    * thread uses this submap. */
   void load() const override;
 
-  /** Keeps only the observed part of `evidence`, packed, and frees the grid: about a fifth of the memory. */
+  /** Keeps only the observed part of `evidence`, packed, or nothing of it if it is stored away, and frees the
+   * grid: about a fifth of the memory. */
   void unload() const override;
 
   void getSensorPose(mrpt::poses::CPose3D& pose) const override;
@@ -105,15 +152,20 @@ class GridSubmap : public mrpt::obs::CObservation, public mrpt::opengl::Visualiz
   void getVisualizationInto(mrpt::opengl::CSetOfObjects& out) const override;
 
  private:
-  mutable std::shared_ptr<const PackedEvidence> packed_;
+  void freeGrid() const;
+
+  mutable bool loaded_ = true;
+  mutable EvidenceSummary summary_;                       // while unloaded
+  mutable std::shared_ptr<const PackedEvidence> packed_;  // while unloaded, unless stored away
+  std::shared_ptr<const SubmapBulkSource> source_;        // if stored away
 };
 
 /** The evidence of a submap to read from, whether it is loaded or not: an unloaded one is unpacked for as
- * long as this lives, and the submap is left as it is. */
+ * long as this lives, and the submap is left as it is. Throws as GridSubmap::packedEvidence(). */
 class LoadedEvidence {
  public:
   explicit LoadedEvidence(const GridSubmap& submap) : submap_(submap) {
-    if (const auto packed = submap.packedEvidence()) unpacked_ = packed->unpacked();
+    if (!submap.evidenceIsLoaded()) unpacked_ = submap.packedEvidence()->unpacked();
   }
 
   const EvidenceGrid& operator*() const { return unpacked_ ? *unpacked_ : submap_.evidence; }
@@ -123,9 +175,5 @@ class LoadedEvidence {
   const GridSubmap& submap_;
   std::optional<EvidenceGrid> unpacked_;
 };
-
-/** The packed evidence of a submap, which stays as it is: what it keeps if it is unloaded, else packed now.
- */
-std::shared_ptr<const PackedEvidence> packedEvidenceOf(const GridSubmap& submap);
 
 }  // namespace submap_slam

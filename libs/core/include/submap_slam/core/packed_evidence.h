@@ -1,5 +1,6 @@
 #pragma once
 
+#include <mrpt/serialization/CArchive.h>
 #include <submap_slam/core/evidence_grid.h>
 
 #include <array>
@@ -18,10 +19,23 @@ class PackedEvidence {
   /** The grid it was made from, to the last bit. */
   EvidenceGrid unpacked() const;
 
+  /** Writes the stored blocks into a grid, this one's cell (0, 0) to cell (column, row), as far as they lie
+   * inside of it. */
+  void copyTo(EvidenceGrid& grid, int column, int row) const;
+
+  void writeTo(mrpt::serialization::CArchive& out) const;
+
+  /** Throws std::runtime_error if sizes are implausible or do not match. */
+  static PackedEvidence readFrom(mrpt::serialization::CArchive& in);
+
   bool empty() const { return cells_.empty(); }
 
   /** Cells in the blocks that are stored. */
   std::size_t storedCells() const { return cells_.size() * kSide * kSide; }
+
+  /** Memory it takes. */
+  std::size_t bytes() const;
+
   double resolution() const { return resolution_; }    ///< m per cell
   double xMin() const { return x_min_; }               ///< left edge of cell (0, ·) (m)
   double yMin() const { return y_min_; }               ///< lower edge of cell (·, 0) (m)
@@ -34,6 +48,18 @@ class PackedEvidence {
     if (!block) return {0.0f, 0.0f};
     const std::size_t k = static_cast<std::size_t>(((cy & kMask) << kShift) + (cx & kMask));
     return {block->log_odds[k], block->hits[k]};
+  }
+
+  /** Calls visit(cx, cy, log_odds, hits) for each observed cell, in a fixed order. */
+  template <class Visit>
+  void forEachObserved(Visit visit) const {
+    for (int by = 0; by < rows_; ++by)
+      for (int bx = 0; bx < columns_; ++bx)
+        if (const Block* block = blockAt(bx, by))
+          for (std::size_t k = 0; k < kSide * kSide; ++k)
+            if (block->hits[k] > 0)
+              visit((bx << kShift) + static_cast<int>(k % kSide),
+                    (by << kShift) + static_cast<int>(k / kSide), block->log_odds[k], block->hits[k]);
   }
 
   /** Whether any of the four cells (cx, cy) … (cx + 1, cy + 1) may be observed. */
@@ -56,7 +82,12 @@ class PackedEvidence {
                                static_cast<std::size_t>(bx)];
     return k < 0 ? nullptr : &cells_[static_cast<std::size_t>(k)];
   }
-  void addBlock(const EvidenceGrid& grid, int bx, int by);
+  /** No block is stored yet. */
+  PackedEvidence(double x_min, double x_max, double y_min, double y_max, double resolution, std::size_t nx,
+                 std::size_t ny);
+  void packBlock(const EvidenceGrid& grid, int bx, int by);
+  void store(const Block& block, int bx, int by);
+  std::vector<uint32_t> storedPositions() const;
 
   double x_min_, y_min_, x_max_, y_max_, resolution_;
   std::size_t nx_, ny_;

@@ -16,7 +16,8 @@ class SubmapJoiner : public Joiner {
    * @param initial  frames to start from, one for each submap (from the chain or the joiner before), with the
    * constraints so far
    * @param progress may be empty; false from it ends the iteration early with the best frames so far
-   * @return frames with the first one fixed, and the nodes of `initial` unless the joiner places them anew; a status instead of an exception for every numerical outcome.
+   * @return frames with the first one fixed, and the nodes of `initial` unless the joiner places them anew; a
+   * status instead of an exception for every numerical outcome.
    * The global map may be left empty: the caller then fuses it by eq. (15). The result must not depend on the
    * number of threads. */
   virtual JoinedMap join(const GridSubmaps& submaps, const JoinedMap& initial,

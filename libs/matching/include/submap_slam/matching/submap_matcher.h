@@ -43,9 +43,9 @@ class SubmapMatcher {
   const SurfelMap& surfels() const { return surfels_; }
 
   /** Best match in the window of T_ref_other; empty if none reaches min_score.
-   * @param other    evidence of the other submap
+   * @param other    the other submap; its evidence is read only if the search of the window finds something
    * @param surface  its surface */
-  std::optional<SubmapMatch> match(const PackedEvidence& other, const SubmapSurface& surface,
+  std::optional<SubmapMatch> match(const GridSubmap& other, const SubmapSurface& surface,
                                    const PoseWindow& window) const;
 
  private:

@@ -2,6 +2,7 @@
 
 #include <submap_slam/core/joined_map.h>
 #include <submap_slam/rawlog/resume_state.h>
+#include <submap_slam/rawlog/submap_store.h>
 
 #include <cstdint>
 #include <memory>
@@ -17,8 +18,9 @@ class DurableFile;
  * objects. */
 class SubmapLogReader {
  public:
-  /** Throws InputError if the file does not exist or is no file. */
-  explicit SubmapLogReader(const std::string& file);
+  /** Throws InputError if the file does not exist or is no file.
+   * @param offset where to start, from nextStart() of another reader */
+  explicit SubmapLogReader(const std::string& file, uint64_t offset = 0);
   ~SubmapLogReader();
   SubmapLogReader(SubmapLogReader&&) noexcept;
   SubmapLogReader& operator=(SubmapLogReader&&) noexcept;
@@ -31,6 +33,10 @@ class SubmapLogReader {
    * far, if their gzip member ended with them. */
   uint64_t validBytes() const;
 
+  /** Byte of the file where the next submap can be read on its own; empty if it shares a gzip member with the
+   * one before. */
+  std::optional<uint64_t> nextStart() const;
+
   /** Share of the file that was read, in [0, 1]. */
   double fractionRead() const;
 
@@ -39,10 +45,11 @@ class SubmapLogReader {
   std::unique_ptr<Impl> impl_;
 };
 
-/** All submaps of a file, unloaded (read their evidence with LoadedEvidence). Throws InputError if it is
- * damaged, empty or holds something else; the text names the offset and how many submaps before it are valid.
- */
-GridSubmaps readSubmaps(const std::string& file);
+/** All submaps of a file, unloaded (read their evidence with LoadedEvidence, their scans with
+ * GridSubmap::scans). Throws InputError if it is damaged, empty or holds something else; the text names the
+ * offset and how many submaps before it are valid.
+ * @param store takes evidence and scans; null: they stay in memory */
+GridSubmaps readSubmaps(const std::string& file, const std::shared_ptr<SubmapStore>& store = nullptr);
 
 /** What can be used of a file of submaps. */
 struct RecoveredSubmaps {
@@ -51,8 +58,9 @@ struct RecoveredSubmaps {
   std::string damage;        ///< what is wrong behind that part; empty: nothing
 };
 
-/** The submaps before the first damage, unloaded. Throws InputError only if the file cannot be opened. */
-RecoveredSubmaps recoverSubmaps(const std::string& file);
+/** The submaps before the first damage, unloaded. Throws InputError only if the file cannot be opened.
+ * @param store as for readSubmaps */
+RecoveredSubmaps recoverSubmaps(const std::string& file, const std::shared_ptr<SubmapStore>& store = nullptr);
 
 /** Writes submaps to a file that is a rawlog, each as a gzip member of its own, and keeps the state to resume
  * from beside it.

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <submap_slam/core/grid_submap.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <string>
+
+namespace submap_slam {
+
+/** Keeps evidence and scans of submaps within a budget of memory.
+ *
+ * What was used least recently is dropped and read again, when asked for, from the file that the submap came
+ * from; a submap that cannot be read on its own there is copied to a spill file. Whatever the budget, readers
+ * see the same values. Any number of threads may use submaps whose bulk is here.
+ */
+class SubmapStore : public std::enable_shared_from_this<SubmapStore> {
+ public:
+  /** Where a submap can be read on its own, see SubmapLogReader::nextStart. */
+  struct Home {
+    std::string file;
+    uint64_t offset = 0;
+  };
+
+  /** @param memory_bytes how much is kept; what readers still hold comes on top
+   * @param spill_file   written when it is first needed, removed with the store */
+  static std::shared_ptr<SubmapStore> create(std::size_t memory_bytes, std::string spill_file);
+  ~SubmapStore();
+  SubmapStore(const SubmapStore&) = delete;
+  SubmapStore& operator=(const SubmapStore&) = delete;
+
+  /** Takes the bulk of a submap, which can be read again from `home`. Not while another thread uses it. */
+  void takeOver(GridSubmap& submap, const Home& home);
+
+  /** The same for a submap that is in no file. Throws OutputError if the spill file cannot be written. */
+  void takeOver(GridSubmap& submap);
+
+  /** Memory of what is kept now. */
+  std::size_t bytesKept() const;
+
+  /** How often something was read again. */
+  std::size_t timesRead() const;
+
+ private:
+  class Entry;
+  using BulkPtr = std::shared_ptr<const SubmapBulk>;
+
+  SubmapStore(std::size_t memory_bytes, std::string spill_file);
+  BulkPtr get(const Entry& entry);
+  BulkPtr find(const Entry& entry);
+  void keep(const Entry& entry, const BulkPtr& bulk);
+  void forget(const Entry& entry);
+  Home spill(const GridSubmap& submap);
+
+  const std::size_t budget_;
+  const std::string spill_file_;
+  uint64_t spilled_bytes_ = 0;
+
+  mutable std::mutex mutex_;        // guards what follows, and what the entries keep
+  std::list<const Entry*> recent_;  // those that keep something, the most recently used first
+  std::size_t bytes_kept_ = 0, times_read_ = 0;
+};
+
+}  // namespace submap_slam
