@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+#include <submap_slam/core/errors.h>
 #include <submap_slam/rawlog/landmark_log.h>
 
 #include <memory>
@@ -29,10 +31,13 @@ void ignoreIds(Configuration& config) {
 
 int runJoin(const JoinOptions& options) {
   const auto config = loadConfiguration(options.run.configuration);
+  const bool landmarks = holdsLandmarkSubmaps(options.submap_file);
+  if (options.unknown_association && !landmarks)
+    throw InputError(
+        fmt::format("{}: --unknown-association: expected a file of landmark submaps", options.submap_file));
   if (options.unknown_association) ignoreIds(*config);
   const auto limit = limitThreads(options.run.threads);
   Reporter reporter(options.run.quiet);
-  const bool landmarks = holdsLandmarkSubmaps(options.submap_file);
   const RunSummary summary = (landmarks ? joinLandmarkFile : joinFile)(
       options.submap_file, options.folder, options.run.overwrite, *config, reporter);
   reporter.note((landmarks ? landmarkSummary : mapSummary)(summary, options.folder));

@@ -26,12 +26,14 @@ void checkResult(const LandmarkJoiner& joiner, const JoinedLandmarks& joined, st
   const bool finite = std::all_of(joined.frames.begin(), joined.frames.end(),
                                   [](const auto& f) {
                                     return std::isfinite(f.mean.x()) && std::isfinite(f.mean.y()) &&
-                                           std::isfinite(f.mean.phi());
+                                           std::isfinite(f.mean.phi()) && f.cov.asEigen().allFinite();
                                   }) &&
-                      std::all_of(joined.landmarks.begin(), joined.landmarks.end(),
-                                  [](const auto& l) { return std::isfinite(l.x) && std::isfinite(l.y); });
+                      std::all_of(joined.landmarks.begin(), joined.landmarks.end(), [](const auto& l) {
+                        return std::isfinite(l.x) && std::isfinite(l.y) && l.covariance.asEigen().allFinite();
+                      });
   if (!finite)
-    throw PluginError(fmt::format("joiner {}: gave an estimate that is not finite", joiner.name()));
+    throw PluginError(
+        fmt::format("joiner {}: gave an estimate or a covariance that is not finite", joiner.name()));
 }
 
 JoinedLandmarks runJoiner(const LandmarkJoiner& joiner, const LandmarkSubmaps& submaps, Reporter& reporter,
@@ -50,7 +52,8 @@ JoinedLandmarks runJoiner(const LandmarkJoiner& joiner, const LandmarkSubmaps& s
       fmt::format("{}: {} ({}), objective {}, {} iterations", joiner.name(), toString(joined.status),
                   joined.reason, joined.objective, joined.iterations.size());
   if (joined.status == JoinStatus::kFailed) {
-    reporter.warning(outcome);
+    reporter.warning(fmt::format("{}: the submaps could not be joined: {}; results are without any joining",
+                                 joiner.name(), joined.reason));
   } else {
     reporter.log(outcome);
   }
@@ -81,6 +84,7 @@ RunSummary joinLandmarkFile(const std::string& submap_file, const std::string& f
   reporter.log(fmt::format("{} submaps", submaps.size()));
   const JoinedLandmarks joined = runJoiner(*joiner, submaps, reporter, summary.interrupted);
   addTime(summary.metrics, "join_", join_timer);
+  summary.failed = joined.status == JoinStatus::kFailed;
   addLandmarkMetrics(summary.metrics, submaps, joined);
 
   const StageTimer write_timer;

@@ -21,6 +21,7 @@ struct RunSummary {
   Metrics metrics;           ///< what metrics.json holds
   bool damaged = false;      ///< the log is damaged; the part before the damage was used
   bool interrupted = false;  ///< a stop signal ended it early
+  bool failed = false;       ///< landmark submaps could not be joined; what is written is not joined
 };
 
 /** Maps a rawlog: reads frames, cuts them into stretches, builds their submaps, joins them, writes all

@@ -59,6 +59,7 @@ std::string buildSummary(const RunSummary& summary, const std::string& submap_fi
 
 ExitCode exitCodeOf(const RunSummary& summary) {
   if (summary.interrupted) return kInterrupted;
+  if (summary.failed) return kFailure;
   return summary.damaged ? kDamagedLog : kSuccess;
 }
 

@@ -33,7 +33,7 @@ class JointSet {
     }
     const double distance2 = distance2_.empty() ? 0 : distance2_.back();
     const double grown = distance2 + whitened_.segment<2>(n).squaredNorm();
-    if (!(grown <= gate(static_cast<std::size_t>(n) + 2))) return false;
+    if (!(grown <= jointGate(all_.gate2, static_cast<std::size_t>(n) + 2))) return false;
     chosen_.push_back(pairing);
     distance2_.push_back(grown);
     return true;
@@ -119,10 +119,10 @@ class BranchAndBound {
 
 }  // namespace
 
-double gate(std::size_t degrees_of_freedom) {
-  constexpr double kNormalQuantile = 2.326348;
+double jointGate(double gate2, std::size_t degrees_of_freedom) {
+  const double normal_quantile = 3 * std::cbrt(gate2 / 2) - 8.0 / 3;  // of gate2 as χ² with n = 2
   const auto n = static_cast<double>(degrees_of_freedom);
-  return n * std::pow(1 - 2 / (9 * n) + kNormalQuantile * std::sqrt(2 / (9 * n)), 3);
+  return n * std::pow(1 - 2 / (9 * n) + normal_quantile * std::sqrt(2 / (9 * n)), 3);
 }
 
 std::vector<std::size_t> nearestNeighbours(const Candidates& candidates) {

@@ -16,10 +16,11 @@ struct Candidates {
   std::vector<Pairing> pairings;
   Eigen::VectorXd innovation;
   Eigen::MatrixXd covariance;
+  double gate2 = 9.21;  ///< largest squared distance of a pairing by itself; see jointGate()
 };
 
 /** Nearest neighbours: pairings in the order of their distance, each feature and each landmark once. A
- * pairing that contradicts those before it (joint distance above the 99 % quantile) is left out.
+ * pairing that contradicts those before it (joint distance above its jointGate()) is left out.
  * @return indices of pairings */
 std::vector<std::size_t> nearestNeighbours(const Candidates& candidates);
 
@@ -29,8 +30,9 @@ std::vector<std::size_t> nearestNeighbours(const Candidates& candidates);
  * @return indices of pairings */
 std::vector<std::size_t> jointCompatibility(const Candidates& candidates);
 
-/** 99 % quantile of the χ² distribution, by Wilson and Hilferty (0.1 % off for two degrees of freedom, less
- * for more). */
-double gate(std::size_t degrees_of_freedom);
+/** Largest joint squared distance, with as many degrees of freedom, that is as likely as a distance of
+ * `gate2` is with two: the quantile of the χ² distribution for 1 − exp(−gate2 / 2), by Wilson and Hilferty
+ * (for 99 % at most 0.2 % off, and the same as `gate2` for two degrees of freedom). */
+double jointGate(double gate2, std::size_t degrees_of_freedom);
 
 }  // namespace submap_slam::landmark_joining

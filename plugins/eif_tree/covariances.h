@@ -14,6 +14,12 @@ struct Covariances {
   std::vector<Eigen::Matrix2d> landmarks;
 };
 
+/** An estimate with its covariances. */
+struct Estimate {
+  JointState state;
+  Covariances covariances;
+};
+
 /** The diagonal blocks of I⁻¹ by Takahashi's equations; after InformationForm::factorize() only. */
 Covariances marginalCovariances(const JointProblem& problem, const InformationForm& form);
 

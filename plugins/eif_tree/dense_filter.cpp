@@ -36,15 +36,19 @@ class DenseFilter {
     return true;
   }
 
-  DenseEstimate estimate() const {
-    DenseEstimate e;
+  Estimate estimate() const {
+    Estimate e;
     for (const int row : end_row_) {
       e.state.ends.emplace_back(x_.segment<3>(row));
       e.covariances.ends.emplace_back(p_.block<3, 3>(row, row));
     }
-    for (const int row : landmark_row_) {
-      e.state.landmarks.emplace_back(x_.segment<2>(row));
-      e.covariances.landmarks.emplace_back(p_.block<2, 2>(row, row));
+    e.state.landmarks.assign(landmark_row_.size(), Point::Zero());
+    e.covariances.landmarks.assign(landmark_row_.size(), Eigen::Matrix2d::Zero());
+    for (std::size_t m = 0; m < landmark_row_.size(); ++m) {
+      const int row = landmark_row_[m];
+      if (row < 0) continue;
+      e.state.landmarks[m] = x_.segment<2>(row);
+      e.covariances.landmarks[m] = p_.block<2, 2>(row, row);
     }
     return e;
   }
@@ -117,16 +121,18 @@ bool DenseFilter::constrain(const std::vector<std::pair<int, int>>& twins) {
 
 }  // namespace
 
-std::optional<DenseEstimate> joinDense(const JointProblem& problem,
-                                       const std::function<bool(double)>& progress) {
+std::size_t stateSize(const JointProblem& problem) {
+  return 3 * problem.submaps() + 2 * problem.landmark_count;
+}
+
+std::optional<Estimate> joinDense(const JointProblem& problem, const std::function<bool(double)>& progress) {
   const std::size_t submaps = problem.submaps();
-  if (3 * submaps + 2 * problem.landmark_count > kLargestDenseState) return std::nullopt;
   DenseFilter filter(problem);
   for (std::size_t k = 0; k < submaps; ++k) {
     if (!filter.fuse(k)) return std::nullopt;
     // Work grows with the square of the state.
     const double share = static_cast<double>(k + 1) / static_cast<double>(submaps);
-    if (progress && !progress(share * share * share)) return std::nullopt;
+    if (progress && !progress(share * share * share)) break;
   }
   return filter.estimate();
 }

@@ -1,8 +1,10 @@
 #include "eif_tree.h"
 
+#include <fmt/format.h>
 #include <mrpt/math/wrap2pi.h>
-
 #include <submap_slam/core/errors.h>
+
+#include "chaining.h"
 
 namespace submap_slam {
 
@@ -34,15 +36,19 @@ JoinedLandmarks resultOf(const AssociatedProblem& associated, const Joining& joi
   return joined;
 }
 
-/** Frames where nothing else is known: end poses one after the other. */
-std::vector<mrpt::poses::CPosePDFGaussian> chainedFrames(const LandmarkSubmaps& submaps) {
-  Pose pose = Pose::Zero();
-  std::vector<mrpt::poses::CPosePDFGaussian> frames{frameOf(pose, Eigen::Matrix3d::Zero())};
-  for (const auto& submap : submaps) {
-    pose = compose(pose, Pose(submap->end_pose.x, submap->end_pose.y, submap->end_pose.phi));
-    frames.push_back(frameOf(pose, Eigen::Matrix3d::Zero()));
-  }
-  return frames;
+/** What is left where the association failed: end poses one after the other, and no landmarks. */
+JoinedLandmarks withoutLandmarks(const LandmarkSubmaps& submaps, const std::string& reason) {
+  AssociatedProblem associated;
+  for (const auto& submap : submaps)
+    associated.observations.push_back(observationOf(*submap, std::vector<bool>(submap->features.size())));
+  for (const auto& observation : associated.observations)
+    associated.problem.observations.push_back(&observation);
+  associated.problem.landmarks.resize(submaps.size());
+  Estimate estimate = chained(associated.problem);
+  Joining joining{std::move(estimate.state), std::move(estimate.covariances), {}};
+  joining.result.status = JoinStatus::kFailed;
+  joining.result.reason = reason;
+  return resultOf(associated, joining);
 }
 
 }  // namespace
@@ -56,9 +62,9 @@ void EifTree::describe(ParameterTable& table) {
             {"tree_gn", "tree", "sequential", "sequential_iterated", "ekf"});
   table.add("steps_per_join", options_.steps_per_join, "", {1, 100},
             "Gauss-Newton steps after each join of the tree.");
-  table.add(
-      "relinearise_above", options_.relinearise_above, "m or rad", {0, 1e9},
-      "sequential_iterated is relinearised over all submaps when a submap changes an estimate by more.");
+  table.add("relinearise_above", options_.relinearise_above, "m or rad", {0, 1e9},
+            "sequential_iterated and association by position are relinearised over all submaps when a submap "
+            "changes an estimate by more.");
   table.add("max_iterations", options_.gauss_newton.max_iterations, "", {1, 10000},
             "Limit of Gauss-Newton iterations over all submaps.");
   table.add("step_tolerance", options_.gauss_newton.max_step_m, "m", {0, 1},
@@ -83,6 +89,11 @@ void EifTree::describe(ParameterTable& table) {
 void EifTree::validate() const {
   if (association_options_.new_gate < association_options_.match_gate)
     throw ConfigError("[eif_tree] new_gate must not be less than match_gate");
+  if (association_ != "known" && method_ != "tree_gn")
+    throw ConfigError(
+        fmt::format("[eif_tree] association = {} has a joining of its own; it cannot be combined with "
+                    "method = {}",
+                    association_, method_));
 }
 
 JoiningOptions EifTree::joiningOptions() const {
@@ -110,8 +121,9 @@ JoinedLandmarks EifTree::joinUnknown(const LandmarkSubmaps& submaps,
   AssociationOptions options = association_options_;
   options.joint_search = association_ == "jcbb";
   constexpr double kAssociationShare = 0.95;  // of the time
-  auto found = associateByPosition(submaps, options, options_.gauss_newton,
-                                   [&](double share) { return progress(kAssociationShare * share); });
+  auto found =
+      associateByPosition(submaps, options, {true, options_.relinearise_above, options_.gauss_newton},
+                          [&](double share) { return progress(kAssociationShare * share); });
   JoinedLandmarks joined;
   if (found) {
     joined =
@@ -119,10 +131,13 @@ JoinedLandmarks EifTree::joinUnknown(const LandmarkSubmaps& submaps,
                  joinFrom(found->state, found->associated.problem, options_.gauss_newton, [&](double share) {
                    return progress(kAssociationShare + (1 - kAssociationShare) * share);
                  }));
+    if (found->associated_submaps < submaps.size() && joined.status != JoinStatus::kFailed) {
+      joined.status = JoinStatus::kIterationLimit;
+      joined.reason = fmt::format("stopped after {} of {} submaps were associated; the others are chained",
+                                  found->associated_submaps, submaps.size());
+    }
   } else {
-    joined.status = JoinStatus::kFailed;
-    joined.reason = "the association was stopped or the information matrix is not positive definite";
-    joined.frames = chainedFrames(submaps);
+    joined = withoutLandmarks(submaps, "the information matrix is not positive definite");
   }
   joined.association_known = false;
   return joined;

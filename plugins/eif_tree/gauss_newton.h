@@ -15,7 +15,7 @@ struct GaussNewtonOptions {
 };
 
 struct GaussNewtonResult {
-  JoinStatus status = JoinStatus::kConverged;
+  JoinStatus status = JoinStatus::kChained;
   std::string reason;
   double objective = 0;
   std::vector<JoinIteration> iterations;

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "chaining.h"
 #include "dense_filter.h"
 #include "sequential_filter.h"
 #include "tree.h"
@@ -13,25 +14,30 @@ namespace {
 
 using Progress = std::function<bool(double)>;
 
-Joining failed(const JointProblem& problem, const std::string& reason) {
+Joining joiningOf(const JointProblem& problem, Estimate estimate, JoinStatus status,
+                  const std::string& reason) {
   Joining joining;
-  joining.state = chainedState(problem);
-  joining.covariances.ends.assign(problem.submaps(), Eigen::Matrix3d::Zero());
-  joining.covariances.landmarks.assign(problem.landmark_count, Eigen::Matrix2d::Zero());
-  joining.result.status = JoinStatus::kFailed;
+  joining.result.status = status;
   joining.result.reason = reason;
-  joining.result.objective = objective(problem, joining.state);
+  joining.result.objective = objective(problem, estimate.state);
+  joining.state = std::move(estimate.state);
+  joining.covariances = std::move(estimate.covariances);
   return joining;
 }
 
-Joining finished(const JointProblem& problem, JointState state, Covariances covariances,
-                 const std::string& reason) {
-  Joining joining;
-  joining.result.reason = reason;
-  joining.result.objective = objective(problem, state);
-  joining.state = std::move(state);
-  joining.covariances = std::move(covariances);
-  return joining;
+Joining failed(const JointProblem& problem, const std::string& reason) {
+  return joiningOf(problem, chained(problem), JoinStatus::kFailed, reason);
+}
+
+/** The estimate of a filter that fused all submaps, or was stopped after the first ones. */
+Joining fused(const JointProblem& problem, Estimate estimate) {
+  const std::size_t count = estimate.state.ends.size();
+  if (count == problem.submaps())
+    return joiningOf(problem, std::move(estimate), JoinStatus::kConverged, "all submaps are fused");
+  chainOn(problem, estimate);
+  return joiningOf(
+      problem, std::move(estimate), JoinStatus::kIterationLimit,
+      fmt::format("stopped after {} of {} submaps; the others are chained", count, problem.submaps()));
 }
 
 const char* const kNotDefinite = "the information matrix is not positive definite";
@@ -48,11 +54,15 @@ Joining byTree(const JoiningOptions& options, const JointProblem& problem, const
                         between(progress, 0, then_gauss_newton ? kTreeShare : 1));
   if (!start) return failed(problem, kNotDefinite);
   if (then_gauss_newton)
-    return joinFrom(std::move(*start), problem, options.gauss_newton, between(progress, kTreeShare, 1));
+    return joinFrom(std::move(start->state), problem, options.gauss_newton, between(progress, kTreeShare, 1));
   InformationForm form(problem);
-  form.lineariseAll(*start);
+  form.lineariseAll(start->state);
   if (!form.factorize()) return failed(problem, kNotDefinite);
-  return finished(problem, std::move(*start), marginalCovariances(problem, form), "the tree is joined");
+  Estimate estimate{std::move(start->state), marginalCovariances(problem, form)};
+  if (start->stopped)
+    return joiningOf(problem, std::move(estimate), JoinStatus::kIterationLimit,
+                     "stopped before the tree was joined");
+  return joiningOf(problem, std::move(estimate), JoinStatus::kConverged, "the tree is joined");
 }
 
 Joining sequentially(const JoiningOptions& options, const JointProblem& problem, const Progress& progress) {
@@ -72,27 +82,29 @@ Joining sequentially(const JoiningOptions& options, const JointProblem& problem,
     }
     if (!filter.fuse(*problem.observations[k], landmarks)) return failed(problem, kNotDefinite);
     const double share = static_cast<double>(k + 1) / static_cast<double>(problem.submaps());
-    if (progress && !progress(share * share)) return failed(problem, "stopped before all submaps were fused");
+    if (progress && !progress(share * share)) break;
   }
   const Covariances by_arrival = marginalCovariances(filter.problem(), *filter.form());
-  JointState state = filter.state();
-  Covariances covariances = by_arrival;
+  Estimate estimate{{filter.state().ends, {}}, {by_arrival.ends, {}}};
+  estimate.state.landmarks.assign(problem.landmark_count, Point::Zero());
+  estimate.covariances.landmarks.assign(problem.landmark_count, Eigen::Matrix2d::Zero());
   for (std::size_t i = 0; i < order.size(); ++i) {
     const auto landmark = static_cast<std::size_t>(order[i]);
-    state.landmarks[landmark] = filter.state().landmarks[i];
-    covariances.landmarks[landmark] = by_arrival.landmarks[i];
+    estimate.state.landmarks[landmark] = filter.state().landmarks[i];
+    estimate.covariances.landmarks[landmark] = by_arrival.landmarks[i];
   }
-  return finished(problem, std::move(state), std::move(covariances), "all submaps are fused");
+  return fused(problem, std::move(estimate));
 }
 
 Joining densely(const JointProblem& problem, const Progress& progress) {
+  const std::size_t size = stateSize(problem);
+  if (size > kLargestDenseState)
+    return failed(problem,
+                  fmt::format("the state has {} elements, too large for the dense filter, which takes {}",
+                              size, kLargestDenseState));
   auto estimate = joinDense(problem, progress);
-  if (!estimate)
-    return failed(problem, fmt::format("the dense filter was stopped, has more than {} elements or is not "
-                                       "positive definite",
-                                       kLargestDenseState));
-  return finished(problem, std::move(estimate->state), std::move(estimate->covariances),
-                  "all submaps are fused");
+  if (!estimate) return failed(problem, "the covariance of an innovation is not positive definite");
+  return fused(problem, std::move(*estimate));
 }
 
 }  // namespace

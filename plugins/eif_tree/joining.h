@@ -23,15 +23,16 @@ struct JoiningOptions {
   GaussNewtonOptions gauss_newton;
 };
 
-/** An estimate with its covariances. */
+/** An estimate with its covariances; without any joining where the status is kFailed. */
 struct Joining {
   JointState state;
-  Covariances covariances;  ///< zero where the status is kFailed
+  Covariances covariances;
   GaussNewtonResult result;
 };
 
 /** Joins by the method that the options say.
- * @param progress may be empty; called with the share of the work done, false ends it early */
+ * @param progress may be empty; called with the share of the work done, false ends it early with
+ * what was joined so far */
 Joining joinBy(const JoiningOptions& options, const JointProblem& problem,
                const std::function<bool(double)>& progress);
 

@@ -153,7 +153,7 @@ std::size_t mergeDuplicates(AssociatedProblem& associated, JointState& state, do
     const std::vector<int> index = renumbered(associated.problem.landmark_count, twins);
     auto merged = tryMerge(associated.problem, state, index, gauss_newton);
     const double before = objective(associated.problem, state);
-    if (merged && merged->objective - before <= gate(2 * twins.size())) {
+    if (merged && merged->objective - before <= jointGate(gate2, 2 * twins.size())) {
       merges += twins.size();
       apply(std::move(*merged), index, associated, state);
       twins = findTwins(associated.problem, state, gate2);

@@ -64,7 +64,7 @@ struct Contribution {
 };
 Contribution linearise(const JointProblem& problem, const JointState& state, std::size_t k);
 
-/** J of linearise(), for tests and for joining by dense filters. */
+/** J of linearise(); also carries covariances over to predicted landmarks. */
 Eigen::MatrixXd jacobian(const Pose& start, const Eigen::VectorXd& predicted);
 
 }  // namespace submap_slam::landmark_joining

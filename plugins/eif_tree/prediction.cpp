@@ -50,6 +50,7 @@ Comparison compare(const Prediction& prediction, const Eigen::VectorXd& z, const
       c.candidates.pairings.push_back({f, prediction.landmarks[static_cast<std::size_t>(l)], distance2});
       for (int axis : {0, 1}) feature_rows.push_back(2 * f + axis), landmark_rows.push_back(2 * l + axis);
     }
+  c.candidates.gate2 = gate2;
   c.candidates.innovation = z(feature_rows) - prediction.mean(landmark_rows);
   c.candidates.covariance =
       q(feature_rows, feature_rows) + prediction.covariance(landmark_rows, landmark_rows);

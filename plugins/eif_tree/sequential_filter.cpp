@@ -73,22 +73,4 @@ bool SequentialFilter::solveFrozen() {
   return true;
 }
 
-JointState chainedState(const JointProblem& problem) {
-  JointState state;
-  state.landmarks.resize(problem.landmark_count, Point::Zero());
-  std::vector<bool> seen(problem.landmark_count);
-  for (std::size_t k = 0; k < problem.submaps(); ++k) {
-    const Eigen::VectorXd& z = problem.observations[k]->z;
-    const Pose start = startOf(state, k);
-    for (std::size_t i = 0; i < problem.landmarks[k].size(); ++i) {
-      const auto index = static_cast<std::size_t>(problem.landmarks[k][i]);
-      if (seen[index]) continue;
-      seen[index] = true;
-      state.landmarks[index] = compose(start, Point(z.segment<2>(3 + 2 * static_cast<Eigen::Index>(i))));
-    }
-    state.ends.push_back(compose(start, Pose(z.head<3>())));
-  }
-  return state;
-}
-
 }  // namespace submap_slam::landmark_joining

@@ -42,7 +42,4 @@ class SequentialFilter {
   std::unique_ptr<InformationForm> form_;
 };
 
-/** The state without any joining: end poses chained, each landmark as the first submap saw it. */
-JointState chainedState(const JointProblem& problem);
-
 }  // namespace submap_slam::landmark_joining

@@ -25,13 +25,17 @@ class TreeJoin {
     const Part left = join(first, middle), right = join(middle, last);
     Part both = merge(left, right);
     const bool is_root = last - first == whole_.submaps();
-    if (going_on_ && !failed_ && (options_.refine_root || !is_root)) refine(both);
+    if (options_.refine_root || !is_root) {
+      stopped_ = stopped_ || !going_on_;
+      if (going_on_ && !failed_) refine(both);
+    }
     joined_ += last - first;
     going_on_ = going_on_ && (!progress_ || progress_(shareDone()));
     return both;
   }
 
   bool failed() const { return failed_; }
+  bool stopped() const { return stopped_; }
 
  private:
   Part leaf(std::size_t k) const;
@@ -51,7 +55,7 @@ class TreeJoin {
   const std::function<bool(double)>& progress_;
   std::vector<int> local_;  // index of each landmark in the part at work
   std::size_t joined_ = 0;
-  bool going_on_ = true, failed_ = false;
+  bool going_on_ = true, failed_ = false, stopped_ = false;
 };
 
 Part TreeJoin::leaf(std::size_t k) const {
@@ -121,12 +125,12 @@ void TreeJoin::refine(Part& part) {
 
 }  // namespace
 
-std::optional<JointState> joinTree(const JointProblem& problem, const TreeOptions& options,
+std::optional<TreeResult> joinTree(const JointProblem& problem, const TreeOptions& options,
                                    const std::function<bool(double)>& progress) {
   TreeJoin tree(problem, options, progress);
   Part whole = tree.join(0, problem.submaps());
   if (tree.failed()) return std::nullopt;
-  return std::move(whole.state);
+  return TreeResult{std::move(whole.state), tree.stopped()};
 }
 
 }  // namespace submap_slam::landmark_joining

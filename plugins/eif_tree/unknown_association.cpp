@@ -1,27 +1,28 @@
 #include "unknown_association.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "merging.h"
 #include "prediction.h"
-#include "sequential_filter.h"
 
 namespace submap_slam::landmark_joining {
 namespace {
 
 using Kind = FeatureAssociation::Kind;
+constexpr double kNoNeighbour = std::numeric_limits<double>::infinity();
 
 /** What to do with each feature of a submap. */
 struct Decision {
   Kind kind = Kind::kNew;
   int landmark = -1;  ///< of a match
-  double distance2 = 0;
+  double distance2 = kNoNeighbour;
 };
 
 class SequentialAssociation {
  public:
-  SequentialAssociation(const AssociationOptions& options, const GaussNewtonOptions& gauss_newton)
-      : options_(options), filter_({true, 0.01, gauss_newton}) {}
+  SequentialAssociation(const AssociationOptions& options, const SequentialOptions& joining)
+      : options_(options), filter_(joining) {}
 
   /** Room for the observations must be there from the start, as the filter points to them. */
   void reserve(std::size_t submaps) { associated_.observations.reserve(submaps); }
@@ -42,9 +43,23 @@ class SequentialAssociation {
     return filter_.fuse(associated_.observations.back(), landmarks);
   }
 
+  /** After all others: keeps only the end pose of a submap. */
+  void leaveOut(const LandmarkSubmap& submap) {
+    for (const auto& feature : submap.features)
+      associated_.associations.push_back({submap.id, feature.id, Kind::kDropped, 0, kNoNeighbour});
+    associated_.observations.push_back(observationOf(submap, std::vector<bool>(submap.features.size())));
+  }
+
   UnknownAssociation result() && {
-    associated_.problem = filter_.problem();
-    return {std::move(associated_), filter_.state()};
+    const std::size_t associated_submaps = filter_.problem().submaps();
+    JointProblem& problem = associated_.problem = filter_.problem();
+    JointState state = filter_.state();
+    for (std::size_t k = associated_submaps; k < associated_.observations.size(); ++k) {
+      problem.observations.push_back(&associated_.observations[k]);
+      problem.landmarks.emplace_back();
+      state.ends.push_back(compose(startOf(state, k), Pose(associated_.observations[k].z)));
+    }
+    return {std::move(associated_), std::move(state), associated_submaps};
   }
 
  private:
@@ -98,20 +113,27 @@ std::vector<Decision> SequentialAssociation::decide(const LandmarkSubmap& submap
 
 std::optional<UnknownAssociation> associateByPosition(const LandmarkSubmaps& submaps,
                                                       const AssociationOptions& options,
-                                                      const GaussNewtonOptions& gauss_newton,
+                                                      const SequentialOptions& joining,
                                                       const std::function<bool(double)>& progress) {
-  SequentialAssociation association(options, gauss_newton);
+  SequentialAssociation association(options, joining);
   association.reserve(submaps.size());
+  bool going_on = true;
   for (std::size_t k = 0; k < submaps.size(); ++k) {
+    if (!going_on) {
+      association.leaveOut(*submaps[k]);
+      continue;
+    }
     if (!association.add(*submaps[k])) return std::nullopt;
     const double share = static_cast<double>(k + 1) / static_cast<double>(submaps.size());
-    if (progress && !progress(share * share)) return std::nullopt;
+    going_on = !progress || progress(share * share);
   }
   UnknownAssociation result = std::move(association).result();
+  if (!going_on) return result;
   InformationForm form(result.associated.problem);
-  const auto joined = minimise(result.associated.problem, form, result.state, gauss_newton, {});
+  const auto joined = minimise(result.associated.problem, form, result.state, joining.gauss_newton, {});
   if (joined.status == JoinStatus::kFailed) return std::nullopt;
-  if (options.merge) mergeDuplicates(result.associated, result.state, options.match_gate, gauss_newton);
+  if (options.merge)
+    mergeDuplicates(result.associated, result.state, options.match_gate, joining.gauss_newton);
   return result;
 }
 

@@ -5,6 +5,7 @@
 
 #include "gauss_newton.h"
 #include "known_association.h"
+#include "sequential_filter.h"
 
 namespace submap_slam::landmark_joining {
 
@@ -20,16 +21,19 @@ struct AssociationOptions {
 struct UnknownAssociation {
   AssociatedProblem associated;
   JointState state;
+  std::size_t associated_submaps = 0;  ///< fewer than all if stopped
 };
 
 /** Associates submap by submap while they are joined by the iterated sequential filter (Algorithm 1 of
  * Combined SLAM): landmarks near the start pose are predicted into the submap with their joint covariance;
  * features are matched, new, or dropped where they are neither. In the end landmarks that agree are merged as
  * long as the joint estimate agrees with it.
- * @return empty if stopped or if an information matrix was not positive definite */
+ * @param progress called with the share of the work done; false ends it: features of the other submaps are
+ * dropped and their end poses chained, and nothing is merged
+ * @return empty if an information matrix was not positive definite */
 std::optional<UnknownAssociation> associateByPosition(const LandmarkSubmaps& submaps,
                                                       const AssociationOptions& options,
-                                                      const GaussNewtonOptions& gauss_newton,
+                                                      const SequentialOptions& joining,
                                                       const std::function<bool(double)>& progress);
 
 }  // namespace submap_slam::landmark_joining

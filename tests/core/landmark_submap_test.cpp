@@ -62,6 +62,28 @@ TEST(LandmarkSubmap, WithACovarianceOfTheWrongSizeIsNotWritten) {
   EXPECT_THROW(archive << submap, std::exception);
 }
 
+TEST(LandmarkSubmap, WithADamagedCountIsRefusedBeforeMemoryIsTaken) {
+  LandmarkSubmap submap;
+  submap.covariance.setIdentity(3);
+  mrpt::io::CMemoryStream memory;
+  auto archive = mrpt::serialization::archiveFrom(memory);
+  const auto bytes_of = [](const mrpt::io::CMemoryStream& m) {
+    return static_cast<std::size_t>(m.getTotalBytesCount());
+  };
+  archive << submap;
+  // Behind the count are six numbers of the covariance and the end mark of the object.
+  auto* count = static_cast<uint8_t*>(memory.getRawBufferData()) + bytes_of(memory) - 1 - 6 * 8 - 4;
+  ASSERT_EQ(std::vector<uint8_t>(count, count + 4), std::vector<uint8_t>(4, 0));
+  count[1] = 0x4e;  // 19968
+  memory.Seek(0);
+  try {
+    archive.ReadObject();
+    ADD_FAILURE() << "no exception";
+  } catch (const std::exception& error) {
+    EXPECT_THAT(error.what(), HasSubstr("19968 features, expected at most 2000"));
+  }
+}
+
 TEST(LandmarkSubmap, DescribesAndShowsItself) {
   const LandmarkSubmap submap = twoFeatures();
   EXPECT_DOUBLE_EQ(submap.radius(), 5);
@@ -109,6 +131,9 @@ TEST(LandmarkSubmap, ThatMakesNoSenseIsRefusedWithTheReason) {
   submap = twoFeatures();
   submap.covariance.setIdentity(5);
   EXPECT_THAT(refusal(submap), HasSubstr("5 x 5, expected 7 x 7"));
+  submap = twoFeatures();
+  submap.features.resize(kMostFeatures + 1);
+  EXPECT_THAT(refusal(submap), HasSubstr("2001 features, expected at most 2000"));
 }
 
 TEST(AssociationErrors, CountWrongAndMissedMatches) {

@@ -142,6 +142,37 @@ TEST_F(CliLandmarks, BadInputIsRefusedInOneLine) {
       "no plugin offers the joiner 'grid_gauss_newton'");
 }
 
+TEST_F(CliLandmarks, UnknownAssociationThatCannotTakeEffectIsRefused) {
+  expectRefused(
+      run({"join", path("s.txt"), "-o", path("a"), "--unknown-association", "--set", "eif_tree.method=ekf"}),
+      "association = jcbb");
+  expectRefused(run({"join", log("room.rawlog"), "-o", path("b"), "--unknown-association"}),
+                "--unknown-association: expected a file of landmark submaps");
+}
+
+TEST_F(CliLandmarks, AJoinThatFailsSaysSoAndExitsWithAnError) {
+  auto submap = octagon().front();
+  submap->features.clear();
+  submap->covariance.setIdentity(3);
+  writeLandmarkText(path("many.txt"), LandmarkSubmaps(2700, submap));
+  const Outcome outcome =
+      run({"join", path("many.txt"), "-o", path("out"), "-q", "--set", "eif_tree.method=ekf"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("the submaps could not be joined: the state has 8100 elements"));
+  EXPECT_EQ(metrics("out")["join_status"], "failed");
+}
+
+TEST_F(CliLandmarks, CovariancesThatAreNotFiniteAreRefused) {
+  auto submap = octagon().front();
+  submap->features.clear();
+  submap->covariance.setIdentity(3);
+  submap->covariance *= 1e308;
+  writeLandmarkText(path("huge.txt"), LandmarkSubmaps(4, submap));
+  const Outcome outcome = run({"join", path("huge.txt"), "-o", path("out"), "-q"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("not finite"));
+}
+
 TEST_F(CliLandmarks, JoinersOfBothFormsAreListed) {
   const std::string list = succeed({"--list-joiners"}).out;
   EXPECT_THAT(list, HasSubstr("eif_tree"));

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "eif_tree/chaining.h"
 #include "eif_tree/dense_filter.h"
 #include "eif_tree/joining.h"
 #include "eif_tree/known_association.h"
@@ -19,6 +20,8 @@ namespace submap_slam {
 namespace {
 
 using namespace landmark_joining;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 using testing::LandmarkWorldOptions;
 using testing::simulateLandmarks;
 
@@ -124,7 +127,7 @@ TEST(Observation, JacobianAgreesWithFiniteDifferences) {
 TEST(Observation, ContributionIsThatOfTheJacobian) {
   const auto associated = associateByIds(simulateLandmarks({}));
   const JointProblem& problem = associated.problem;
-  const JointState state = chainedState(problem);
+  const JointState state = chained(problem).state;
   const std::size_t k = 5;
   const Contribution c = linearise(problem, state, k);
   const Eigen::VectorXd r = residual(problem, state, k);
@@ -167,7 +170,7 @@ TEST(EifTree, WhereTheProblemIsLinearAllMethodsAreBatchLeastSquares) {
   LandmarkWorldOptions world;
   world.sigma_rad = 1e-7;  // headings are certain
   const auto associated = associateByIds(simulateLandmarks(world));
-  const JointState batch = denseGaussNewton(associated.problem, chainedState(associated.problem));
+  const JointState batch = denseGaussNewton(associated.problem, chained(associated.problem).state);
   for (const Method method : {Method::kTreeThenGaussNewton, Method::kTree, Method::kSequential,
                               Method::kSequentialIterated, Method::kDenseFilter}) {
     const Joining joining = joinBy(by(method), associated.problem, {});
@@ -224,7 +227,7 @@ TEST(EifTree, CovariancesAreThoseOfTheDenseInverse) {
 
 TEST(EifTree, CovarianceOfSomeRowsIsASubMatrixOfTheDenseInverse) {
   const auto associated = associateByIds(simulateLandmarks({}));
-  const JointState state = chainedState(associated.problem);
+  const JointState state = chained(associated.problem).state;
   InformationForm form(associated.problem);
   form.lineariseAll(state);
   ASSERT_TRUE(form.factorize());
@@ -272,6 +275,70 @@ TEST(EifTree, StoppingGivesTheBestSoFar) {
   const Joining joining = joinBy({}, associated.problem, [](double) { return false; });
   EXPECT_EQ(joining.result.status, JoinStatus::kIterationLimit);
   EXPECT_TRUE(stacked(joining.state).allFinite());
+}
+
+TEST(EifTree, AStoppedTreeSaysSo) {
+  const auto associated = associateByIds(simulateLandmarks({}));
+  const Joining stopped = joinBy(by(Method::kTree), associated.problem, [](double) { return false; });
+  EXPECT_EQ(stopped.result.status, JoinStatus::kIterationLimit);
+  EXPECT_THAT(stopped.result.reason, HasSubstr("stopped"));
+  EXPECT_TRUE(stacked(stopped.state).allFinite());
+  const Joining whole = joinBy(by(Method::kTree), associated.problem, {});
+  EXPECT_EQ(whole.result.status, JoinStatus::kConverged);
+  EXPECT_LT(whole.result.objective, stopped.result.objective);
+  const Joining in_the_end =
+      joinBy(by(Method::kTree), associated.problem, [](double share) { return share < 1; });
+  EXPECT_EQ(in_the_end.result.status, JoinStatus::kConverged) << "nothing was left to do";
+}
+
+TEST(EifTree, AStoppedFilterKeepsWhatWasFusedAndChainsTheRest) {
+  const auto submaps = simulateLandmarks({});
+  constexpr std::size_t kFused = 5;
+  const auto part = associateByIds(LandmarkSubmaps(submaps.begin(), submaps.begin() + kFused));
+  const auto associated = associateByIds(submaps);
+  for (const Method method : {Method::kSequential, Method::kSequentialIterated, Method::kDenseFilter}) {
+    int calls = 0;
+    const Joining stopped =
+        joinBy(by(method), associated.problem, [&](double) { return ++calls < static_cast<int>(kFused); });
+    EXPECT_EQ(stopped.result.status, JoinStatus::kIterationLimit);
+    EXPECT_THAT(stopped.result.reason, HasSubstr("stopped after 5 of 12 submaps"));
+    const Joining fused = joinBy(by(method), part.problem, {});
+    ASSERT_EQ(stopped.state.ends.size(), submaps.size());
+    for (std::size_t k = 0; k < kFused; ++k) {
+      EXPECT_LT((stopped.state.ends[k] - fused.state.ends[k]).norm(), 1e-9);
+      EXPECT_LT((stopped.covariances.ends[k] - fused.covariances.ends[k]).norm(), 1e-12);
+    }
+    for (std::size_t k = kFused; k < submaps.size(); ++k) {
+      const Pose chain = compose(stopped.state.ends[k - 1], Pose(associated.observations[k].z.head<3>()));
+      EXPECT_LT((stopped.state.ends[k] - chain).norm(), 1e-12);
+      EXPECT_GT(stopped.covariances.ends[k](2, 2), stopped.covariances.ends[k - 1](2, 2));
+    }
+    for (const auto& covariance : stopped.covariances.landmarks) EXPECT_GT(covariance.determinant(), 0);
+  }
+}
+
+TEST(EifTree, AChainHasTheCovarianceOfAProblemWithoutCommonLandmarks) {
+  auto submaps = simulateLandmarks({});
+  for (std::size_t k = 0; k < submaps.size(); ++k)
+    for (auto& feature : submaps[k]->features) feature.id += static_cast<uint32_t>(1000 * k);
+  const auto associated = associateByIds(submaps);
+  const Estimate chain = chained(associated.problem);
+  const Joining joined = joinBy(by(Method::kTree), associated.problem, {});
+  for (std::size_t k = 0; k < submaps.size(); ++k)
+    EXPECT_LT((chain.covariances.ends[k] - joined.covariances.ends[k]).norm(),
+              1e-6 * chain.covariances.ends[k].norm());
+  for (std::size_t m = 0; m < associated.problem.landmark_count; ++m)
+    EXPECT_LT((chain.covariances.landmarks[m] - joined.covariances.landmarks[m]).norm(),
+              1e-6 * chain.covariances.landmarks[m].norm());
+}
+
+TEST(EifTree, AProblemTooLargeForTheDenseFilterFailsForThatReason) {
+  const LandmarkSubmaps many(kLargestDenseState / 3 + 1, submapOf({1, 0, 0}, {}, 0.01));
+  const auto associated = associateByIds(many);
+  const Joining joining = joinBy(by(Method::kDenseFilter), associated.problem, {});
+  EXPECT_EQ(joining.result.status, JoinStatus::kFailed);
+  EXPECT_THAT(joining.result.reason, HasSubstr("too large"));
+  EXPECT_GT(joining.covariances.ends.back()(0, 0), joining.covariances.ends.front()(0, 0));
 }
 
 /** The joiner as the program gets it: from the plugin file. */
@@ -331,6 +398,41 @@ TEST_F(EifTreePlugin, EveryMethodCanBeChosen) {
     EXPECT_NE(joiner->join(simulateLandmarks({}), {}).status, JoinStatus::kFailed) << method;
   }
   EXPECT_THROW(parameters.set("eif_tree", "method", "magic"), ConfigError);
+}
+
+TEST_F(EifTreePlugin, AMethodThatAssociationByPositionWouldIgnoreIsRefused) {
+  parameters.set("eif_tree", "method", "ekf");
+  EXPECT_NO_THROW(joiner->validate());
+  parameters.set("eif_tree", "association", "jcbb");
+  try {
+    joiner->validate();
+    ADD_FAILURE() << "no ConfigError";
+  } catch (const ConfigError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("association = jcbb"), HasSubstr("method = ekf")));
+  }
+  parameters.set("eif_tree", "method", "tree_gn");
+  EXPECT_NO_THROW(joiner->validate());
+}
+
+TEST_F(EifTreePlugin, AStoppedAssociationKeepsWhatWasJoined) {
+  parameters.set("eif_tree", "association", "jcbb");
+  const auto submaps = simulateLandmarks({});
+  int calls = 0;
+  const JoinedLandmarks joined =
+      joiner->join(submaps, [&](double, const std::string&) { return ++calls < 4; });
+  EXPECT_EQ(joined.status, JoinStatus::kIterationLimit);
+  EXPECT_THAT(joined.reason, HasSubstr("stopped after 4 of 12 submaps"));
+  ASSERT_EQ(joined.frames.size(), submaps.size() + 1);
+  EXPECT_FALSE(joined.landmarks.empty());
+  std::size_t features = 0;
+  for (const auto& submap : submaps) features += submap->features.size();
+  ASSERT_EQ(joined.associations.size(), features);
+  for (const auto& a : joined.associations) {
+    const bool left_out = a.submap >= 4;
+    EXPECT_TRUE(!left_out || a.kind == FeatureAssociation::Kind::kDropped) << a.submap;
+  }
+  for (std::size_t k = 5; k < joined.frames.size(); ++k)
+    EXPECT_GT(joined.frames[k].cov(2, 2), joined.frames[k - 1].cov(2, 2));
 }
 
 TEST_F(EifTreePlugin, ReachesTheMinimumOfASimulatedSequence) { expectObjective("sim_8240_50.txt", 458.154); }

@@ -45,9 +45,23 @@ Candidates onALine(const std::vector<Pairing>& pairings, const std::vector<doubl
 }
 
 TEST(Compatibility, GateIsTheQuantileOfChiSquared) {
-  EXPECT_NEAR(gate(2), 9.210, 0.02);
-  EXPECT_NEAR(gate(10), 23.209, 0.04);
-  EXPECT_NEAR(gate(200), 249.445, 0.04);
+  const double p99 = -2 * std::log(0.01), p999 = -2 * std::log(0.001);
+  EXPECT_NEAR(jointGate(p99, 2), p99, 1e-9);
+  EXPECT_NEAR(jointGate(p99, 10), 23.209, 0.05);
+  EXPECT_NEAR(jointGate(p99, 200), 249.445, 0.1);
+  EXPECT_NEAR(jointGate(p999, 2), p999, 1e-9);
+  EXPECT_NEAR(jointGate(p999, 10), 29.588, 0.3);
+  EXPECT_GT(jointGate(0, 200), 0);
+  EXPECT_LT(jointGate(0, 200), jointGate(p99, 200));
+}
+
+TEST(Compatibility, AWiderGateAlsoAcceptsASinglePairingBeyondTheUsualOne) {
+  auto c = onALine({{0, 5, 0}}, {4}, 0.5, 0.5);  // squared distance 16
+  EXPECT_TRUE(nearestNeighbours(c).empty());
+  EXPECT_TRUE(jointCompatibility(c).empty());
+  c.gate2 = 20;
+  EXPECT_EQ(nearestNeighbours(c).size(), 1u);
+  EXPECT_EQ(jointCompatibility(c).size(), 1u);
 }
 
 TEST(Compatibility, BothFindWhatIsClear) {
@@ -159,6 +173,14 @@ TEST(UnknownAssociation, AFeatureBetweenTheGatesIsLeftOut) {
   EXPECT_EQ(decision(0.45).kind, Kind::kDropped);
   EXPECT_NEAR(decision(0.45).distance2, 0.45 * 0.45 / 0.02, 0.01);
   EXPECT_EQ(decision(0.55).kind, Kind::kNew);
+}
+
+TEST(UnknownAssociation, WithoutANeighbourThereIsNoDistance) {
+  const auto submaps = simulateLandmarks({});
+  const auto found = associateByPosition(submaps, {}, {}, {});
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->associated_submaps, submaps.size());
+  EXPECT_TRUE(std::isinf(found->associated.associations.front().distance2));
 }
 
 /** The submaps with every landmark that the last three saw under a name of its own there. */

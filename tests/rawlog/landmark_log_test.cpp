@@ -120,7 +120,8 @@ TEST_F(LandmarkLog, BadTextIsRefusedWithFileAndLine) {
   };
   refused(1, "MAP 2 5", "submap 2: expected 1");
   refused(1, "MAP 1 6", "3 + 2 n");
-  refused(1, "MAP 1 2000001", "at most");
+  refused(1, "MAP 1 2000001", "at most 4003");
+  refused(1, "MAP 1 4005", "at most 4003");
   refused(1, "MAP 1", "the dimension of the state");
   refused(3, "0 nan", "'nan': expected a finite number");
   refused(3, "0 1e999", "expected a finite number");

@@ -25,9 +25,6 @@ namespace {
 using mrpt::math::CMatrixDouble;
 using mrpt::serialization::CArchive;
 
-/** More than this in a count field is taken for a damaged file. */
-constexpr uint32_t kMaxFeatures = 20'000;
-
 /** The lower triangle row by row; the rest follows from it. */
 void writeSymmetric(CArchive& out, const CMatrixDouble& matrix) {
   const auto size = static_cast<std::size_t>(matrix.rows());
@@ -62,6 +59,11 @@ bool isFinite(const LandmarkSubmap& submap) {
                      [](const SubmapFeature& f) { return std::isfinite(f.x) && std::isfinite(f.y); });
 }
 
+void requireFewEnough(std::size_t features) {
+  if (features > kMostFeatures)
+    throw InputError(fmt::format("it has {} features, expected at most {}", features, kMostFeatures));
+}
+
 void requireDifferentIds(const LandmarkSubmap& submap) {
   std::vector<uint32_t> ids;
   for (const auto& feature : submap.features) ids.push_back(feature.id);
@@ -90,7 +92,7 @@ void LandmarkSubmap::serializeFrom(CArchive& in, uint8_t version) {
   in >> sensorLabel >> timestamp >> id >> end_stamp;
   in >> end_pose.x >> end_pose.y >> end_pose.phi;
   const auto count = in.ReadAs<uint32_t>();
-  if (count > kMaxFeatures) throw std::runtime_error("implausible count in a submap");
+  requireFewEnough(count);
   features.resize(count);
   for (auto& f : features) in >> f.id >> f.x >> f.y >> f.hits;
   covariance = readSymmetric(in, dimension());
@@ -155,6 +157,7 @@ CMatrixDouble flooredCovariance(const LandmarkSubmap& submap) {
 }
 
 void requireUsable(const LandmarkSubmap& submap) {
+  requireFewEnough(submap.features.size());
   const auto size = static_cast<int>(submap.dimension());
   if (submap.covariance.rows() != size || submap.covariance.cols() != size)
     throw InputError(fmt::format("its covariance is {} x {}, expected {} x {}", submap.covariance.rows(),

@@ -7,6 +7,9 @@
 #include <mrpt/opengl/stock_objects.h>
 #include <submap_slam/output/landmark_files.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "binary_file.h"
 
 namespace submap_slam {
@@ -67,8 +70,9 @@ void writeAssociations(const std::string& file, const std::vector<FeatureAssocia
   std::string text = "submap,feature,kind,landmark,distance2\n";
   for (const auto& a : associations) {
     const bool dropped = a.kind == FeatureAssociation::Kind::kDropped;
-    text += fmt::format("{},{},{},{},{:.6g}\n", a.submap, a.feature, toString(a.kind),
-                        dropped ? "" : fmt::format("{}", a.landmark), a.distance2);
+    text += fmt::format("{},{},{},{},{}\n", a.submap, a.feature, toString(a.kind),
+                        dropped ? "" : fmt::format("{}", a.landmark),
+                        std::isfinite(a.distance2) ? fmt::format("{:.6g}", a.distance2) : "");
   }
   writeBytes(file, text);
 }
@@ -82,12 +86,11 @@ void writeLandmarkScene(const std::string& file, const JoinedLandmarks& joined) 
 
 Trajectory endPoses(const LandmarkSubmaps& submaps, const JoinedLandmarks& joined) {
   Trajectory trajectory;
-  for (std::size_t k = 0; k < submaps.size() && k + 1 < joined.frames.size(); ++k) {
-    const auto& stamp = submaps[k]->end_stamp;
-    trajectory.push_back(
-        {stamp == INVALID_TIMESTAMP ? mrpt::Clock::fromDouble(static_cast<double>(k)) : stamp,
-         joined.frames[k + 1].mean.asTPose()});
-  }
+  const bool stamped = std::all_of(submaps.begin(), submaps.end(),
+                                   [](const auto& submap) { return submap->end_stamp != INVALID_TIMESTAMP; });
+  for (std::size_t k = 0; k < submaps.size() && k + 1 < joined.frames.size(); ++k)
+    trajectory.push_back({stamped ? submaps[k]->end_stamp : mrpt::Clock::fromDouble(static_cast<double>(k)),
+                          joined.frames[k + 1].mean.asTPose()});
   return trajectory;
 }
 

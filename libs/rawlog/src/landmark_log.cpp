@@ -18,9 +18,7 @@ bool beginsAsText(const std::string& file) {
 }
 
 bool beginsAsRawlog(const std::string& file) {
-  const std::string name = "LandmarkSubmap";
-  const std::string front = ByteSource(file).peek(64);
-  return front.find(name) != std::string::npos && front.find("MAP ") != 0;
+  return ByteSource(file).peek(64).find("LandmarkSubmap") != std::string::npos;
 }
 
 std::string contentOf(const std::string& file) {

@@ -9,8 +9,7 @@
 namespace submap_slam {
 namespace {
 
-/** More than this in the heading of a submap is taken for a mistake: its covariance would have gigabytes. */
-constexpr uint32_t kMaxDimension = 20'003;
+constexpr uint32_t kMaxDimension = 3 + 2 * kMostFeatures;
 
 bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 

@@ -31,7 +31,8 @@ struct FeatureAssociation {
   uint32_t feature = 0;  ///< id of the feature in the submap
   Kind kind = Kind::kKnown;
   uint32_t landmark = 0;  ///< id of the joined landmark; without meaning if dropped
-  double distance2 = 0;   ///< squared Mahalanobis distance to it, or if new or dropped to the nearest one
+  double distance2 = 0;   ///< squared Mahalanobis distance to it, or if new or dropped to the nearest
+  /// one, infinite if there is none
 };
 const char* toString(FeatureAssociation::Kind kind);
 

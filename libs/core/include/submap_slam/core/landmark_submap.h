@@ -63,6 +63,10 @@ class LandmarkSubmap : public mrpt::obs::CObservation, public mrpt::opengl::Visu
   void getVisualizationInto(mrpt::opengl::CSetOfObjects& out) const override;
 };
 
+/** Most features of a submap. More in a file is taken for damage: the covariance, with the square of their
+ * number, would take up the memory. */
+constexpr uint32_t kMostFeatures = 2000;
+
 using LandmarkSubmaps = std::vector<LandmarkSubmap::Ptr>;
 
 /** Least variance of an end pose that joining works with (m², rad²). A submap of a robot that stands still
@@ -72,8 +76,9 @@ constexpr double kLeastPoseVariance = 1e-8;
 /** The covariance of a submap where end pose variances below kLeastPoseVariance are raised to it. */
 mrpt::math::CMatrixDouble flooredCovariance(const LandmarkSubmap& submap);
 
-/** Throws InputError saying what is wrong unless numbers are finite, ids differ within the submap, and the
- * covariance has the right size, is symmetric, and positive definite after flooring. */
+/** Throws InputError saying what is wrong unless it has at most kMostFeatures, numbers are finite, ids differ
+ * within the submap, and the covariance has the right size, is symmetric, and positive definite after
+ * flooring. */
 void requireUsable(const LandmarkSubmap& submap);
 
 }  // namespace submap_slam
