@@ -49,6 +49,9 @@ void addLogOptions(CLI::App& command, ConfigurationOptions& options);
 /** --threads, --quiet and --overwrite. */
 void addRunOptions(CLI::App& command, RunOptions& options);
 
+/** --edits */
+void addEditsOption(CLI::App& command, std::string& file);
+
 /** Limits the number of threads while it lives; 0: as many as the machine has. */
 tbb::global_control limitThreads(int threads);
 
