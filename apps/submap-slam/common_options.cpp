@@ -94,6 +94,15 @@ void addMemoryOption(CLI::App& command, ConfigurationOptions& options) {
       ->group("Run");
 }
 
+void addEditsOption(CLI::App& command, std::string& file) {
+  command
+      .add_option("--edits", file,
+                  "What you change by hand, one a line: reject FROM TO | add FROM TO X Y PHI [SIGMA_XY "
+                  "SIGMA_PHI] | fix ID X Y PHI | mask ID (ids of submaps, m, rad)")
+      ->type_name("FILE")
+      ->group("Run");
+}
+
 tbb::global_control limitThreads(int threads) {
   const int count = threads > 0 ? threads : tbb::info::default_concurrency();
   return {tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count)};

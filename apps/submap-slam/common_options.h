@@ -52,6 +52,9 @@ void addRunOptions(CLI::App& command, RunOptions& options);
 /** --memory. */
 void addMemoryOption(CLI::App& command, ConfigurationOptions& options);
 
+/** --edits */
+void addEditsOption(CLI::App& command, std::string& file);
+
 /** Limits the number of threads while it lives; 0: as many as the machine has. */
 tbb::global_control limitThreads(int threads);
 

@@ -15,7 +15,7 @@ namespace {
 
 struct JoinOptions {
   RunOptions run;
-  std::string submap_file, folder;
+  std::string submap_file, folder, edits_file;
   bool unknown_association = false;
 };
 
@@ -29,6 +29,17 @@ void ignoreIds(Configuration& config) {
     }
 }
 
+RunSummary joinGrids(const JoinOptions& options, const Configuration& config, Reporter& reporter) {
+  const Edits edits = options.edits_file.empty() ? Edits{} : readEdits(options.edits_file);
+  return joinFile(options.submap_file, options.folder, options.run.overwrite, config, reporter, edits);
+}
+
+RunSummary joinLandmarks(const JoinOptions& options, const Configuration& config, Reporter& reporter) {
+  if (!options.edits_file.empty())
+    throw ConfigError("--edits: is for grid submaps; the file holds landmark submaps");
+  return joinLandmarkFile(options.submap_file, options.folder, options.run.overwrite, config, reporter);
+}
+
 int runJoin(const JoinOptions& options) {
   const auto config = loadConfiguration(options.run.configuration);
   const bool landmarks = holdsLandmarkSubmaps(options.submap_file);
@@ -38,8 +49,7 @@ int runJoin(const JoinOptions& options) {
   if (options.unknown_association) ignoreIds(*config);
   const auto limit = limitThreads(options.run.threads);
   Reporter reporter(options.run.quiet);
-  const RunSummary summary = (landmarks ? joinLandmarkFile : joinFile)(
-      options.submap_file, options.folder, options.run.overwrite, *config, reporter);
+  const RunSummary summary = (landmarks ? joinLandmarks : joinGrids)(options, *config, reporter);
   reporter.note((landmarks ? landmarkSummary : mapSummary)(summary, options.folder));
   return exitCodeOf(summary);
 }
@@ -62,6 +72,7 @@ void addJoinCommand(CLI::App& app, int& exit_code) {
   addConfigurationOptions(*command, options->run.configuration);
   addRunOptions(*command, options->run);
   addMemoryOption(*command, options->run.configuration);
+  addEditsOption(*command, options->edits_file);
   command->footer(
       "Example: submap-slam join intel_submaps.rawlog -o intel --set joining.chain=grid_gauss_newton");
   command->callback([options, &exit_code] { exit_code = runJoin(*options); });

@@ -13,16 +13,17 @@ namespace {
 struct MapOptions {
   RunOptions run;
   std::vector<std::string> files;
-  std::string folder;
+  std::string folder, edits_file;
 };
 
 int runMap(MapOptions& options) {
   const std::string log = takeLog(options.files, options.run.configuration);
   const auto config = loadConfiguration(options.run.configuration);
+  const Edits edits = options.edits_file.empty() ? Edits{} : readEdits(options.edits_file);
   const auto limit = limitThreads(options.run.threads);
   Reporter reporter(options.run.quiet);
 
-  const RunSummary summary = mapRawlog(log, options.folder, options.run.overwrite, *config, reporter);
+  const RunSummary summary = mapRawlog(log, options.folder, options.run.overwrite, *config, reporter, edits);
   reporter.note(mapSummary(summary, options.folder));
   return exitCodeOf(summary);
 }
@@ -41,6 +42,7 @@ void addMapCommand(CLI::App& app, int& exit_code) {
   addLogOptions(*command, options->run.configuration);
   addRunOptions(*command, options->run);
   addMemoryOption(*command, options->run.configuration);
+  addEditsOption(*command, options->edits_file);
   command->footer(
       "A run that was stopped goes on when the same command is given again.\n"
       "Example: submap-slam map intel.rawlog -o intel --set submaps.max_distance=15");

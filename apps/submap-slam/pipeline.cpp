@@ -7,6 +7,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_pipeline.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -52,20 +53,31 @@ std::shared_ptr<SubmapStore> makeStore(const Configuration& config, const Output
   return SubmapStore::create(bytesForSubmaps(config.joining), out.file(kSpillFile));
 }
 
+void logEdits(const Edits& edits, const JoinerChain& joiners, Reporter& reporter) {
+  for (const Edit& edit : edits.list) reporter.log("by hand: " + edit.text);
+  const auto onlyMasks = [](const Edit& edit) { return edit.kind == Edit::Kind::kMask; };
+  if (joiners.empty() && !std::all_of(edits.list.begin(), edits.list.end(), onlyMasks))
+    reporter.warning(edits.file + ": only masks count, [joining] chain names no joiner");
+}
+
 /** Joins and writes everything but metrics.json. */
-void joinAndWrite(const GridSubmaps& submaps, const JoinerChain& joiners, const OutputDirectory& out,
-                  const Configuration& config, Reporter& reporter, RunSummary& summary) {
+void joinAndWrite(const GridSubmaps& submaps, const Edits& edits, const JoinerChain& joiners,
+                  const OutputDirectory& out, const Configuration& config, Reporter& reporter,
+                  RunSummary& summary) {
   Metrics& metrics = summary.metrics;
   const StageTimer join_timer;
   reporter.log(fmt::format("{} submaps", submaps.size()));
-  const auto [joined, stopped] = joinSubmaps(submaps, joiners, config.joining.map_resolution, reporter);
+  logEdits(edits, joiners, reporter);
+  const GridSubmaps shown = maskSubmaps(submaps, edits);
+  const auto [joined, stopped] =
+      joinSubmaps(shown, joiners, config.joining.map_resolution, reporter, constraintsOf(edits, submaps));
   requireObservations(joined.map);
   summary.interrupted = stopped;
   addJoinMetrics(metrics, submaps, joined);
   addTime(metrics, "join_", join_timer);
 
   const StageTimer write_timer;
-  writeResults(out, submaps, joined);
+  writeResults(out, shown, joined);
   writeRunRecord(out, config, reporter.logLines());
   addTime(metrics, "write_", write_timer);
 }
@@ -83,7 +95,7 @@ void checkFrames(const SubmapJoiner& joiner, const JoinedMap& joined, std::size_
 }  // namespace
 
 RunSummary mapRawlog(const std::string& log, const std::string& folder, bool overwrite,
-                     const Configuration& config, Reporter& reporter) {
+                     const Configuration& config, Reporter& reporter, const Edits& edits) {
   const StageTimer timer;
   RunSummary summary;
   const JoinerChain joiners = config.joinerChain();  // a wrong name is refused before hours of mapping
@@ -99,8 +111,9 @@ RunSummary mapRawlog(const std::string& log, const std::string& folder, bool ove
   if (summary.interrupted) return summary;
 
   addLogMetrics(summary.metrics, source.report());
-  joinAndWrite(readSubmaps(out.file(kSubmapFile), makeStore(config, out)), joiners, out, config, reporter,
-               summary);
+  const GridSubmaps submaps = readSubmaps(out.file(kSubmapFile), makeStore(config, out));
+  checkEdits(edits, submaps);
+  joinAndWrite(submaps, edits, joiners, out, config, reporter, summary);
   addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
   writeJson(out.file(kMetricsFile), summary.metrics);
   return summary;
@@ -124,16 +137,17 @@ RunSummary buildRawlog(const std::string& log, const std::string& submap_file, b
 }
 
 RunSummary joinFile(const std::string& submap_file, const std::string& folder, bool overwrite,
-                    const Configuration& config, Reporter& reporter) {
+                    const Configuration& config, Reporter& reporter, const Edits& edits) {
   const StageTimer timer;
   RunSummary summary;
   const JoinerChain joiners = config.joinerChain();
   requireSubmaps(submap_file);  // before a folder is made for nothing
   const OutputDirectory out(folder, overwrite);
   const RecoveredSubmaps read = readUsableSubmaps(submap_file, makeStore(config, out));
+  checkEdits(edits, read.submaps);
   summary.damaged = !read.damage.empty();
   if (summary.damaged) reporter.warning(read.damage + "; the submaps before it are joined");
-  joinAndWrite(read.submaps, joiners, out, config, reporter, summary);
+  joinAndWrite(read.submaps, edits, joiners, out, config, reporter, summary);
   addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
   writeJson(out.file(kMetricsFile), summary.metrics);
   return summary;
@@ -185,9 +199,10 @@ bool buildSubmaps(StretchSource& source, const LocalMapper& mapper, SubmapLogWri
 }
 
 JoinOutcome joinSubmaps(const GridSubmaps& submaps, const JoinerChain& joiners, double map_resolution,
-                        Reporter& reporter) {
+                        Reporter& reporter, const std::vector<Constraint>& by_hand) {
   JoinOutcome result{chainSubmaps(submaps)};
   JoinedMap& joined = result.map;
+  joined.constraints.insert(joined.constraints.end(), by_hand.begin(), by_hand.end());
   for (const auto& joiner : joiners) {
     const auto show = [&](double fraction) { reporter.progress("joining with " + joiner->name(), fraction); };
     const auto progress = [&](double fraction, const std::string&) {

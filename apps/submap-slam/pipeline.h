@@ -1,6 +1,7 @@
 /** The whole way from a rawlog to a map. */
 #pragma once
 
+#include <submap_slam/core/edits.h>
 #include <submap_slam/core/joined_map.h>
 #include <submap_slam/core/local_mapper.h>
 #include <submap_slam/output/output_directory.h>
@@ -30,9 +31,11 @@ struct RunSummary {
  * A run that was stopped or killed is continued when it is started again; its results have the same bytes as
  * those of a run that never stopped, also for any number of threads (metrics.json, which holds times,
  * excepted).
- * @param overwrite start anew in a folder that holds something */
+ * @param overwrite start anew in a folder that holds something
+ * @param edits     applied to the joining; if they do not fit the submaps these are kept, and the same call
+ * with others goes on from there */
 RunSummary mapRawlog(const std::string& log, const std::string& folder, bool overwrite,
-                     const Configuration& config, Reporter& reporter);
+                     const Configuration& config, Reporter& reporter, const Edits& edits = {});
 
 /** The first half of mapRawlog: submaps of a rawlog into a file. */
 RunSummary buildRawlog(const std::string& log, const std::string& submap_file, bool overwrite,
@@ -40,7 +43,7 @@ RunSummary buildRawlog(const std::string& log, const std::string& submap_file, b
 
 /** The second half of mapRawlog: from a file of submaps to all results. */
 RunSummary joinFile(const std::string& submap_file, const std::string& folder, bool overwrite,
-                    const Configuration& config, Reporter& reporter);
+                    const Configuration& config, Reporter& reporter, const Edits& edits = {});
 
 /** Builds the submaps of all stretches that `writer` does not have yet, in parallel; each is on disk before
  * the progress goes on. Memory does not grow with the log. After a stop signal no stretch is begun any more;
@@ -54,8 +57,9 @@ struct JoinOutcome {
   bool stopped = false;  ///< a stop signal ended a joiner early
 };
 
-/** Runs the joiners one after the other, from the chain of end poses, and makes the global map. */
+/** Runs the joiners one after the other, from the chain of end poses, and makes the global map.
+ * @param by_hand constraints from the user, which the joiners get with those of the chain */
 JoinOutcome joinSubmaps(const GridSubmaps& submaps, const JoinerChain& joiners, double map_resolution,
-                        Reporter& reporter);
+                        Reporter& reporter, const std::vector<Constraint>& by_hand = {});
 
 }  // namespace submap_slam

@@ -17,7 +17,8 @@ struct Link {
   /** Of its usual error, which is far smaller. The search has to reckon with the former; when all is found a
    * robust estimate does better with the latter. */
   Eigen::Matrix3d usual_covariance = Eigen::Matrix3d::Identity();
-  bool loop = false;  ///< from loop closure: may be wrong, so it gets a robust loss
+  bool loop = false;     ///< from loop closure: may be wrong, so it gets a robust loss
+  bool by_hand = false;  ///< from the user: certain, no robust loss anywhere
 };
 
 /** The submap frames and what is known between them. The first frame is fixed. */

@@ -97,8 +97,8 @@ struct Pending {
 
 class LoopSearch {
  public:
-  LoopSearch(const GridSubmaps& submaps, const LoopSearchParams& params)
-      : submaps_(submaps), params_(params) {}
+  LoopSearch(const GridSubmaps& submaps, const LoopSearchParams& params, const HandEdits& by_hand)
+      : submaps_(submaps), params_(params), by_hand_(by_hand) {}
 
   LoopSearchResult run(const std::function<bool(double)>& progress) {
     result_.graph.frames.push_back({});
@@ -126,11 +126,14 @@ class LoopSearch {
     const Link link = chainLink(submaps_, k - 1, params_);
     result_.graph.frames.push_back(result_.graph.frames.back() + link.T_a_b);
     result_.graph.links.push_back(link);
+    linkByHand(k);
   }
 
+  void linkByHand(std::size_t k);
   void closeLoops(std::size_t k);
   std::vector<Task> tasksOf(std::size_t k, const FrameCovariances& covariances) const;
-  std::string refusal(const Task& task, const SubmapMatch& match, const Matrix3d& match_covariance) const;
+  std::string refusal(std::size_t k, const Task& task, const SubmapMatch& match,
+                      const Matrix3d& match_covariance) const;
   std::size_t list(std::size_t k, const Task& task, const Matrix3d& covariance, const std::string& refused);
   bool acceptVerified(std::size_t k, const FrameCovariances& covariances);
   bool agree(const Link& a, const Link& b, const FrameCovariances& covariances) const;
@@ -138,10 +141,19 @@ class LoopSearch {
 
   const GridSubmaps& submaps_;
   const LoopSearchParams& params_;
+  const HandEdits& by_hand_;
   LoopSearchResult result_;
   std::vector<Known> known_;
   std::vector<Pending> pending_;
 };
+
+/** The links whose newer end is submap k. */
+void LoopSearch::linkByHand(std::size_t k) {
+  const std::size_t before = result_.graph.links.size();
+  for (const Link& link : by_hand_.links)
+    if (std::max(link.from, link.to) == k) result_.graph.links.push_back(link);
+  if (result_.graph.links.size() > before) result_.graph.optimise();
+}
 
 void LoopSearch::closeLoops(std::size_t k) {
   const SubmapMatcher matcher(*submaps_[k], params_.matcher);
@@ -158,7 +170,7 @@ void LoopSearch::closeLoops(std::size_t k) {
     const Matrix3d by_match = covarianceOf(*task.match);
     const Matrix3d covariance = by_match + variances(params_.match_sigma_xy, params_.match_sigma_phi);
     const Matrix3d usual = by_match + variances(params_.usual_match_xy, params_.usual_match_phi);
-    const std::string refused = refusal(task, *task.match, covariance);
+    const std::string refused = refusal(k, task, *task.match, covariance);
     const std::size_t entry = list(k, task, usual, refused);
     if (!refused.empty()) continue;
     pending_.push_back(
@@ -189,8 +201,9 @@ std::vector<LoopSearch::Task> LoopSearch::tasksOf(std::size_t k, const FrameCova
   return tasks;
 }
 
-std::string LoopSearch::refusal(const Task& task, const SubmapMatch& match,
+std::string LoopSearch::refusal(std::size_t k, const Task& task, const SubmapMatch& match,
                                 const Matrix3d& match_covariance) const {
+  if (by_hand_.refuses(k, task.older)) return "rejected by hand";
   if (match.hit_share < params_.min_hit_share)
     return fmt::format("overlap too small: {:.2f} of the surfaces", match.hit_share);
   if (match.agreement < params_.min_agreement)
@@ -212,6 +225,7 @@ std::size_t LoopSearch::list(std::size_t k, const Task& task, const Matrix3d& co
   candidate.T_a_b.cov.asEigen() = covariance;
   candidate.inter = true;
   candidate.accepted = false;
+  candidate.by_hand = by_hand_.refuses(k, task.older);
   candidate.reason = refused.empty() ? "no other match bears it out" : refused;
   result_.candidates.push_back(candidate);
   return result_.candidates.size() - 1;
@@ -273,8 +287,8 @@ bool LoopSearch::acceptVerified(std::size_t k, const FrameCovariances& covarianc
 }  // namespace
 
 LoopSearchResult searchLoops(const GridSubmaps& submaps, const LoopSearchParams& params,
-                             const std::function<bool(double)>& progress) {
-  return LoopSearch(submaps, params).run(progress);
+                             const std::function<bool(double)>& progress, const HandEdits& by_hand) {
+  return LoopSearch(submaps, params, by_hand).run(progress);
 }
 
 }  // namespace submap_slam::pose_graph

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "frame_graph.h"
+#include "hand_edits.h"
 
 namespace submap_slam::pose_graph {
 
@@ -53,8 +54,9 @@ struct LoopSearchResult {
  * graph so far says; matches that pass the gates and are borne out by another one go into the graph, which is
  * optimised before the next submap.
  * @param progress called with the share done; false from it ends the search early
+ * @param by_hand  its links are in the graph from the newer submap on; no match of a refused pair is used
  */
 LoopSearchResult searchLoops(const GridSubmaps& submaps, const LoopSearchParams& params,
-                             const std::function<bool(double)>& progress);
+                             const std::function<bool(double)>& progress, const HandEdits& by_hand = {});
 
 }  // namespace submap_slam::pose_graph

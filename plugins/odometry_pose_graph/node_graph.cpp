@@ -26,7 +26,8 @@ class NodeProblem {
       : submaps_(submaps), params_(params), graph_nodes_(nodes), odometry_(odometry), problem_(ownership()) {
     placeBlocks(graph);
     for (const Link& link : graph.links)
-      add(link.T_a_b, link.usual_covariance, blocks_[link.from].front(), blocks_[link.to].front());
+      add(link.T_a_b, link.usual_covariance, blocks_[link.from].front(), blocks_[link.to].front(),
+          link.by_hand ? nullptr : &cauchy_);
     if (!moveNodes()) return;
     addIntra();
     if (params.odometry == OdometryResidual::kSubmap)
@@ -62,7 +63,13 @@ class NodeProblem {
   void addOdometry(const TPose2D& motion, double length, PoseBlock& a, PoseBlock& b);
 
   void add(const TPose2D& T_a_b, const Matrix3d& covariance, PoseBlock& a, PoseBlock& b) {
-    problem_.AddResidualBlock(RelationResidual::cost(T_a_b, squareRootInformation(covariance)), &cauchy_,
+    add(T_a_b, covariance, a, b, &cauchy_);
+  }
+
+  /** @param loss may be null: none */
+  void add(const TPose2D& T_a_b, const Matrix3d& covariance, PoseBlock& a, PoseBlock& b,
+           ceres::LossFunction* loss) {
+    problem_.AddResidualBlock(RelationResidual::cost(T_a_b, squareRootInformation(covariance)), loss,
                               a.values, b.values);
   }
 
@@ -161,7 +168,7 @@ void weightByTheResult(FrameGraph& graph) {
   for (Link& link : graph.links) {
     const Vector3d e = relationError(graph.frames[link.from], graph.frames[link.to], link.T_a_b).e;
     link.covariance = link.usual_covariance;
-    if (!link.loop) link.covariance *= 1 + e.dot(link.usual_covariance.inverse() * e);
+    if (!link.loop && !link.by_hand) link.covariance *= 1 + e.dot(link.usual_covariance.inverse() * e);
   }
 }
 

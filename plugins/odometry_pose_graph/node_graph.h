@@ -41,7 +41,8 @@ struct FusedGraph {
  *
  * with residuals Lᵀ e (see RelationError) and ρ(s) = log(1 + s) (Huang et al. 2024, eq. 12). Intra-submap: a
  * node where it was matched in its submap, and the end pose, which is the next submap's frame. Inter-submap:
- * the loops of the graph. Nodes between those with a pose of their own move along.
+ * the loops of the graph. What is by hand has ρ(s) = s. Nodes between those with a pose of their own move
+ * along.
  * @param found frames to start from, chain and loops; their usual covariances count. Those of the chain come
  * back as far as the result bears them out: divided by ρ' there. */
 FusedGraph fuseOdometry(const GridSubmaps& submaps, FrameGraph found, const FusionParams& params,

@@ -32,7 +32,7 @@ std::string describeOdometry(const pose_graph::OdometryModel& odometry) {
 std::vector<Constraint> chainConstraints(const pose_graph::FrameGraph& graph, const GridSubmaps& submaps) {
   std::vector<Constraint> constraints;
   for (const auto& link : graph.links) {
-    if (link.loop || !submaps[link.from]->has_successor) continue;
+    if (link.loop || link.by_hand || !submaps[link.from]->has_successor) continue;
     Constraint constraint;
     constraint.from = submaps[link.from]->id;
     constraint.to = submaps[link.to]->id;
@@ -42,6 +42,28 @@ std::vector<Constraint> chainConstraints(const pose_graph::FrameGraph& graph, co
     constraints.push_back(constraint);
   }
   return constraints;
+}
+
+/** What is by hand, but rejected pairs that the search has listed with what it found. */
+std::vector<Constraint> constraintsByHand(const std::vector<Constraint>& initial,
+                                          const std::vector<Constraint>& candidates) {
+  const auto listed = [&candidates](const Constraint& edit) {
+    return std::any_of(candidates.begin(), candidates.end(), [&edit](const Constraint& candidate) {
+      return candidate.by_hand &&
+             std::minmax(candidate.from, candidate.to) == std::minmax(edit.from, edit.to);
+    });
+  };
+  std::vector<Constraint> constraints;
+  for (const Constraint& constraint : initial) {
+    if (!constraint.by_hand || (!constraint.accepted && listed(constraint))) continue;
+    constraints.push_back(constraint);
+    if (!constraint.accepted) constraints.back().reason = "rejected by hand; the search found no such loop";
+  }
+  return constraints;
+}
+
+void append(std::vector<Constraint>& constraints, const std::vector<Constraint>& others) {
+  constraints.insert(constraints.end(), others.begin(), others.end());
 }
 
 }  // namespace
@@ -106,13 +128,15 @@ JoinedMap OdometryPoseGraph::join(const GridSubmaps& submaps, const JoinedMap& i
     return joined;
   }
   const auto report = [&](double share) { return !progress || progress(share, "closing loops"); };
-  const LoopSearchResult found = searchLoops(submaps, search_, report);
+  const HandEdits by_hand = handEditsOf(initial.constraints, submaps);
+  const LoopSearchResult found = searchLoops(submaps, search_, report, by_hand);
   FusionParams fusion = fusion_;
   fusion.odometry = residualOf(odometry_);
   const FusedGraph fused = fuseOdometry(submaps, found.graph, fusion);
   joined.nodes = fused.nodes;
   joined.constraints = chainConstraints(fused.frames, submaps);
-  joined.constraints.insert(joined.constraints.end(), found.candidates.begin(), found.candidates.end());
+  append(joined.constraints, found.candidates);
+  append(joined.constraints, constraintsByHand(initial.constraints, found.candidates));
   const FrameCovariances covariances(fused.frames);
   for (std::size_t i = 0; i < joined.frames.size(); ++i) {
     joined.frames[i].mean = mrpt::poses::CPose2D(fused.frames.frames[i]);

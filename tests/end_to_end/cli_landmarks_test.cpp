@@ -55,6 +55,13 @@ class CliLandmarks : public CliTest {
   }
 };
 
+TEST_F(CliLandmarks, EditsOfGridSubmapsAreRefused) {
+  writeFile(path("edits.txt"), "mask 0");
+  expectRefused(run({"join", path("s.txt"), "-o", path("out"), "--edits", path("edits.txt")}),
+                "--edits: is for grid submaps");
+  EXPECT_FALSE(std::filesystem::exists(path("out")));
+}
+
 TEST_F(CliLandmarks, JoinWritesEveryResultAndSaysWhere) {
   const Outcome outcome = succeed({"join", path("s.txt"), "-o", path("out")});
   EXPECT_THAT(outcome.err, HasSubstr("map: " + path("out/map.png")));

@@ -1,4 +1,5 @@
 #include <gmock/gmock.h>
+#include <submap_slam/core/edits.h>
 #include <submap_slam/core/errors.h>
 #include <submap_slam/core/plugins.h>
 #include <submap_slam/core/submap_joiner.h>
@@ -66,6 +67,40 @@ struct RoomProblem {
       submaps.push_back(renderSubmap(testing::room(), truth[i], 5, 0.1, 0.1, static_cast<uint32_t>(i)));
   }
 };
+
+TEST_F(GridGaussNewtonPlugin, AMaskedSubmapFollowsTheChainAndGivesNothingToTheMap) {
+  RoomProblem room;
+  testing::linkChain(room.submaps, room.truth, 0.01, 0.01);
+  Edits edits;
+  edits.list.emplace_back().to = 2;
+  const GridSubmaps masked = maskSubmaps(room.submaps, edits);
+  const JoinedMap joined = join(masked, room.truth);
+  EXPECT_EQ(joined.status, JoinStatus::kConverged) << joined.reason;
+  const TPose2D link = room.submaps[1]->end_pose.mean.asTPose();
+  EXPECT_LT(distance(frameOf(joined, 2), frameOf(joined, 1) + link), 1e-3);
+  const EvidenceGrid map = fuseEvidence(masked, joined.frames, 0.1);
+  const EvidenceGrid without =
+      fuseEvidence({masked[0], masked[1]}, {joined.frames[0], joined.frames[1]}, 0.1);
+  EXPECT_EQ(map.observedCells(), without.observedCells());
+}
+
+TEST_F(GridGaussNewtonPlugin, AConstraintByHandMovesAFrame) {
+  RoomProblem room;
+  testing::linkChain(room.submaps, room.truth, 1, 1);
+  JoinedMap initial;
+  initial.frames = asGaussians(room.truth);
+  initial.constraints = chainSubmaps(room.submaps).constraints;
+  Constraint& fixed = initial.constraints.emplace_back();
+  fixed.from = 0;
+  fixed.to = 2;
+  fixed.by_hand = fixed.inter = true;
+  const TPose2D elsewhere(room.truth[2].x + 0.3, room.truth[2].y, room.truth[2].phi);
+  fixed.T_a_b.mean = mrpt::poses::CPose2D(elsewhere);
+  fixed.T_a_b.cov.setDiagonal(3, 1e-6);
+  const JoinedMap joined = joiner->join(room.submaps, initial, {});
+  EXPECT_LT(distance(frameOf(joined, 2), elsewhere), 0.05) << joined.reason;
+  EXPECT_TRUE(joined.constraints.back().by_hand);
+}
 
 TEST_F(GridGaussNewtonPlugin, FindsAKnownDisplacementInARoom) {
   const PoseList truth{{0, 0, 0}, {1.5, 0.6, 0.7}};

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <mrpt/math/wrap2pi.h>
+#include <submap_slam/core/edits.h>
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -230,6 +231,99 @@ TEST(OdometryPoseGraph, OneSubmapIsNothingToJoin) {
   const JoinedMap joined = OdometryPoseGraph().join(one, chainSubmaps(one), {});
   EXPECT_EQ(joined.status, JoinStatus::kNothingToJoin);
   EXPECT_EQ(joined.frames.size(), 1u);
+}
+
+/** A loop closure that the joiner finds by itself. */
+Constraint acceptedLoop(const JoinedMap& joined) {
+  for (const auto& c : joined.constraints)
+    if (c.inter && c.accepted) return c;
+  ADD_FAILURE() << "no loop closure";
+  return {};
+}
+
+const Constraint* constraintBetween(const JoinedMap& joined, uint32_t from, uint32_t to) {
+  for (const auto& c : joined.constraints)
+    if (c.inter && c.from == from && c.to == to) return &c;
+  return nullptr;
+}
+
+JoinedMap joinWith(const GridSubmaps& submaps, const Constraint& by_hand) {
+  JoinedMap initial = chainSubmaps(submaps);
+  initial.constraints.push_back(by_hand);
+  initial.constraints.back().by_hand = true;
+  return OdometryPoseGraph().join(submaps, initial, {});
+}
+
+Constraint relation(uint32_t from, uint32_t to, const TPose2D& T_a_b, double sigma) {
+  Constraint c;
+  c.from = from;
+  c.to = to;
+  c.inter = true;
+  c.T_a_b.mean = mrpt::poses::CPose2D(T_a_b);
+  c.T_a_b.cov.setDiagonal(3, sigma * sigma);
+  c.reason = "added by hand";
+  return c;
+}
+
+TEST(OdometryPoseGraph, NeverUsesALoopThatIsRejectedByHand) {
+  const BentLoop loop(0.03);
+  const Constraint found =
+      acceptedLoop(OdometryPoseGraph().join(loop.submaps, chainSubmaps(loop.submaps), {}));
+  Constraint rejected = relation(found.to, found.from, {}, 0);  // a pair has no direction
+  rejected.accepted = false;
+  const JoinedMap joined = joinWith(loop.submaps, rejected);
+  const Constraint* entry = constraintBetween(joined, found.from, found.to);
+  ASSERT_TRUE(entry);
+  EXPECT_FALSE(entry->accepted);
+  EXPECT_TRUE(entry->by_hand) << "for the joiners behind it";
+  EXPECT_EQ(entry->reason, "rejected by hand");
+  EXPECT_EQ(entry->T_a_b.mean.asTPose(), found.T_a_b.mean.asTPose()) << "what would have been used";
+  EXPECT_FALSE(constraintBetween(joined, found.to, found.from)) << "listed once";
+}
+
+TEST(OdometryPoseGraph, ListsARejectedLoopThatItDidNotFind) {
+  const BentLoop loop(0);
+  Constraint rejected = relation(0, 2, {}, 0);
+  rejected.accepted = false;
+  const JoinedMap joined = joinWith(loop.submaps, rejected);
+  const Constraint* entry = constraintBetween(joined, 0, 2);
+  ASSERT_TRUE(entry);
+  EXPECT_FALSE(entry->accepted);
+  EXPECT_THAT(entry->reason, ::testing::HasSubstr("rejected by hand; the search found no such loop"));
+}
+
+/** Against all that scans, loops and odometry say: they can be outvoted, the user cannot. */
+TEST(OdometryPoseGraph, AConstraintByHandIsCertain) {
+  const BentLoop loop(0);
+  const auto last = static_cast<uint32_t>(loop.submaps.size() - 1);
+  const auto before = meansOf(OdometryPoseGraph().join(loop.submaps, chainSubmaps(loop.submaps), {}));
+  const TPose2D elsewhere = before[last] + TPose2D(3, -2, 0.4);
+  for (const bool forwards : {true, false}) {
+    const JoinedMap joined =
+        joinWith(loop.submaps, forwards ? relation(0, last, elsewhere, 0.001)
+                                        : relation(last, 0, TPose2D() - elsewhere, 0.001));
+    const TPose2D off = meansOf(joined)[last] - elsewhere;
+    EXPECT_LT(std::hypot(off.x, off.y), 0.05);
+    EXPECT_LT(std::abs(mrpt::math::wrapToPi(off.phi)), 0.02);
+    const Constraint* entry = constraintBetween(joined, forwards ? 0 : last, forwards ? last : 0);
+    ASSERT_TRUE(entry);
+    EXPECT_TRUE(entry->accepted && entry->by_hand);
+    EXPECT_EQ(entry->reason, "added by hand");
+    EXPECT_NEAR(entry->T_a_b.cov(0, 0), 1e-6, 1e-12) << "no weight is taken from it";
+  }
+}
+
+TEST(OdometryPoseGraph, AMaskedSubmapOnlyFollowsTheChain) {
+  const BentLoop loop(0);
+  const uint32_t id =
+      acceptedLoop(OdometryPoseGraph().join(loop.submaps, chainSubmaps(loop.submaps), {})).from;
+  Edits edits;
+  edits.list.emplace_back().to = id;
+  const GridSubmaps masked = maskSubmaps(loop.submaps, edits);
+  const JoinedMap joined = OdometryPoseGraph().join(masked, chainSubmaps(masked), {});
+  for (const auto& c : joined.constraints)
+    EXPECT_FALSE(c.inter && (c.from == id || c.to == id)) << c.from << " " << c.to << " " << c.reason;
+  EXPECT_LT(loop.worst(meansOf(joined)), 0.3);
 }
 
 }  // namespace

@@ -36,6 +36,9 @@ struct Constraint {
   bool inter = false;                   ///< inter-submap (loop closure); false: chain of consecutive submaps
   bool accepted = true;
   std::string reason;  ///< why it was refused or what it rests on
+
+  /** The user said so, and it binds: certain if accepted, else not to be used whatever a joiner finds. */
+  bool by_hand = false;
 };
 
 /** One step of an iterative joiner. */
@@ -53,8 +56,8 @@ struct JoinedMap {
   /** T_w_s of each submap, in the order of the submaps; the first is fixed at the identity. */
   std::vector<mrpt::poses::CPosePDFGaussian> frames;
 
-  /** T_s_node of every node of every submap, if a joiner moved nodes inside their submaps; empty: they are where
-   * the submaps have them. */
+  /** T_s_node of every node of every submap, if a joiner moved nodes inside their submaps; empty: they are
+   * where the submaps have them. */
   std::vector<std::vector<mrpt::math::TPose2D>> nodes;
 
   EvidenceGrid map;  ///< global evidence in the global map frame

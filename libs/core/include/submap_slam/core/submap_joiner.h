@@ -14,7 +14,7 @@ class SubmapJoiner : public Joiner {
   /** Joins.
    * @param submaps  in log order, at least one
    * @param initial  frames to start from, one for each submap (from the chain or the joiner before), with the
-   * constraints so far
+   * constraints so far; those by hand bind
    * @param progress may be empty; false from it ends the iteration early with the best frames so far
    * @return frames with the first one fixed, and the nodes of `initial` unless the joiner places them anew; a
    * status instead of an exception for every numerical outcome.
