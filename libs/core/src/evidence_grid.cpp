@@ -57,7 +57,7 @@ void readCells(mrpt::serialization::CArchive& in, Grid& grid) {
 
 }  // namespace
 
-void EvidenceLayer::swap(EvidenceLayer& other) {
+void EvidenceLayer::swap(EvidenceLayer& other) noexcept {
   std::swap(m_map, other.m_map);
   std::swap(m_x_min, other.m_x_min), std::swap(m_x_max, other.m_x_max);
   std::swap(m_y_min, other.m_y_min), std::swap(m_y_max, other.m_y_max);

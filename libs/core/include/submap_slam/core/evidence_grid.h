@@ -13,9 +13,9 @@ class EvidenceLayer : public mrpt::containers::CDynamicGrid<float> {
  public:
   using CDynamicGrid::CDynamicGrid;
   EvidenceLayer(const EvidenceLayer&) = default;
-  EvidenceLayer(EvidenceLayer&& other) : EvidenceLayer(0, 1, 0, 1, 1) { swap(other); }
+  EvidenceLayer(EvidenceLayer&& other) noexcept : EvidenceLayer(0, 1, 0, 1, 1) { swap(other); }
   EvidenceLayer& operator=(const EvidenceLayer&) = default;
-  EvidenceLayer& operator=(EvidenceLayer&& other) {
+  EvidenceLayer& operator=(EvidenceLayer&& other) noexcept {
     EvidenceLayer taken(std::move(other));
     swap(taken);
     return *this;
@@ -23,7 +23,7 @@ class EvidenceLayer : public mrpt::containers::CDynamicGrid<float> {
   ~EvidenceLayer() override = default;
 
  private:
-  void swap(EvidenceLayer& other);
+  void swap(EvidenceLayer& other) noexcept;
 };
 
 /** Un-saturated occupancy evidence on a regular grid.
