@@ -27,6 +27,12 @@ std::optional<TPose2D> poseAt(const TimedTrajectory& trajectory, const Frame& fr
   return toPose2D(*pose);
 }
 
+void addStatistics(Metrics& scores, const std::string& name, const ErrorStatistics& error_m) {
+  scores[name + "_mean_m"] = error_m.mean;
+  scores[name + "_rmse_m"] = error_m.rmse;
+  scores[name + "_std_m"] = error_m.std;
+}
+
 }  // namespace
 
 std::vector<Frame> readFrames(const std::string& log, const ReaderParams& params) {
@@ -61,6 +67,10 @@ void addPoseScores(Metrics& scores, const TimedTrajectory& estimate, const Timed
   const TrajectoryError absolute = absoluteTrajectoryError(pairs);
   scores["ate_m"] = absolute.translation_m.rmse;
   scores["ate_deg"] = absolute.rotation_deg.rmse;
+  addStatistics(scores, "ape", absolute.translation_m);
+  const TrajectoryError relative = relativePoseError(pairs);
+  addStatistics(scores, "rpe", relative.translation_m);
+  scores["rpe_rmse_deg"] = relative.rotation_deg.rmse;
 }
 
 void addMapScores(Metrics& scores, const COccupancyGridMap2D& map, const TimedTrajectory& estimate,
@@ -84,6 +94,8 @@ void addRelationScores(Metrics& scores, const TimedTrajectory& estimate, const s
   if (report.all.used == 0)
     throw InputError(fmt::format("{}: no relation that the trajectory covers", relations_file));
   scores["relations_m"] = report.all.translation_m.mean;
+  scores["relations_rmse_m"] = report.all.translation_m.rmse;
+  scores["relations_std_m"] = report.all.translation_m.std;
   scores["relations_deg"] = report.all.rotation_deg.mean;
   scores["local_relations_m"] = report.local.translation_m.mean;
   scores["local_relations_deg"] = report.local.rotation_deg.mean;

@@ -1,5 +1,6 @@
 #include "metrics.h"
 
+#include <fmt/format.h>
 #include <submap_slam/core/version.h>
 
 namespace submap_slam {
@@ -26,6 +27,19 @@ void addJoinMetrics(Metrics& metrics, const GridSubmaps& submaps, const JoinedMa
   metrics["join_iterations"] = joined.iterations.size();
   metrics["constraints_accepted"] = accepted;
   metrics["constraints_rejected"] = rejected;
+}
+
+void addProgressMetrics(Metrics& metrics, const std::vector<SubmapProgress>& progress) {
+  if (progress.empty()) return;
+  const MatchScores scores = overallScores(progress);
+  metrics["match_score_mean"] = scores.mean;
+  metrics["match_score_min"] = scores.min;
+  metrics["match_score_max"] = scores.max;
+  metrics["nodes_per_submap"] =
+      static_cast<double>(progress.back().nodes_sum) / static_cast<double>(progress.size());
+  constexpr std::size_t kStages = 5;  // as many as the paper needs
+  const auto shares = stageShares(progress, kStages);
+  for (std::size_t s = 0; s < shares.size(); ++s) metrics[fmt::format("stage_{}", s + 1)] = shares[s];
 }
 
 void addLandmarkMetrics(Metrics& metrics, const LandmarkSubmaps& submaps, const JoinedLandmarks& joined) {

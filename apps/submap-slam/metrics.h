@@ -2,6 +2,7 @@
 #pragma once
 
 #include <submap_slam/core/joined_landmarks.h>
+#include <submap_slam/eval/mapping_progress.h>
 #include <submap_slam/rawlog/log_report.h>
 
 #include <cstdint>
@@ -21,6 +22,10 @@ void addLogMetrics(Metrics& metrics, const LogReport& report);
 /** frames, key_nodes, submaps, objective, join_status, join_reason, join_iterations, and of the loop closures
  * that were tried constraints_accepted and constraints_rejected */
 void addJoinMetrics(Metrics& metrics, const GridSubmaps& submaps, const JoinedMap& joined);
+
+/** match_score_mean, match_score_min, match_score_max, nodes_per_submap, and stage_1 … stage_5: share of the
+ * map after each fifth of the submaps. What has no submaps is left out. */
+void addProgressMetrics(Metrics& metrics, const std::vector<SubmapProgress>& progress);
 
 /** submaps, features, landmarks, objective, join_status, join_reason, join_iterations, association; and where
  * it ignored the ids, how it compares with them: association_wrong, association_missed, features_dropped */

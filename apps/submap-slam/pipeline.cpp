@@ -4,6 +4,7 @@
 #include <submap_slam/core/errors.h>
 #include <submap_slam/mapping/grid_mapper.h>
 #include <submap_slam/output/json_file.h>
+#include <submap_slam/output/text_file.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_pipeline.h>
 
@@ -78,6 +79,9 @@ void joinAndWrite(const GridSubmaps& submaps, const Edits& edits, const JoinerCh
 
   const StageTimer write_timer;
   writeResults(out, shown, joined);
+  const auto progress = mappingProgress(shown, joined.frames);
+  addProgressMetrics(metrics, progress);
+  writeText(out.file("submaps.csv"), progressCsv(progress));
   writeRunRecord(out, config, reporter.logLines());
   addTime(metrics, "write_", write_timer);
 }

@@ -63,7 +63,7 @@ TEST_F(CliTest, MapWritesEveryResultAndSaysWhere) {
   const auto results = contentsOf(path("out"));
   for (const char* name :
        {"map.png", "map.pgm", "map.yaml", "map.gridmap.gz", "map.simplemap", "map.3Dscene", "trajectory.tum",
-        "submaps.rawlog", "graph.g2o", "metrics.json", "config.ini", "log.txt"})
+        "submaps.rawlog", "submaps.csv", "graph.g2o", "metrics.json", "config.ini", "log.txt"})
     EXPECT_THAT(results, ::testing::Contains(Key(name)));
 
   const auto metrics = nlohmann::json::parse(results.at("metrics.json"));
@@ -74,7 +74,8 @@ TEST_F(CliTest, MapWritesEveryResultAndSaysWhere) {
   EXPECT_TRUE(metrics["constraints_rejected"].is_number_unsigned());
   EXPECT_TRUE(metrics["warnings"].empty());
   for (const char* key : {"wall_s", "cpu_s", "build_wall_s", "build_cpu_s", "join_wall_s", "join_cpu_s",
-                          "write_wall_s", "write_cpu_s", "peak_memory_mb", "objective", "version"})
+                          "write_wall_s", "write_cpu_s", "peak_memory_mb", "objective", "version",
+                          "match_score_mean", "nodes_per_submap", "stage_5"})
     EXPECT_TRUE(metrics.contains(key)) << key;
 }
 
