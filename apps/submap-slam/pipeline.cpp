@@ -86,10 +86,16 @@ void joinAndWrite(const GridSubmaps& submaps, const Edits& edits, const JoinerCh
   addTime(metrics, "write_", write_timer);
 }
 
-void checkFrames(const SubmapJoiner& joiner, const JoinedMap& joined, std::size_t submaps) {
-  if (joined.frames.size() != submaps)
+void checkResult(const SubmapJoiner& joiner, const JoinedMap& joined, const GridSubmaps& submaps) {
+  if (joined.frames.size() != submaps.size())
     throw PluginError(fmt::format("joiner {}: gave {} frames for {} submaps", joiner.name(),
-                                  joined.frames.size(), submaps));
+                                  joined.frames.size(), submaps.size()));
+  const auto hasItsNodes = [](const auto& poses, const auto& submap) {
+    return poses.size() == submap->nodes.size();
+  };
+  if (!joined.nodes.empty() &&
+      !std::equal(joined.nodes.begin(), joined.nodes.end(), submaps.begin(), submaps.end(), hasItsNodes))
+    throw PluginError(fmt::format("joiner {}: gave other nodes than the submaps have", joiner.name()));
   for (const auto& frame : joined.frames) {
     if (!std::isfinite(frame.mean.x()) || !std::isfinite(frame.mean.y()) || !std::isfinite(frame.mean.phi()))
       throw PluginError(fmt::format("joiner {}: gave a frame that is not finite", joiner.name()));
@@ -217,7 +223,7 @@ JoinOutcome joinSubmaps(const GridSubmaps& submaps, const JoinerChain& joiners, 
     show(0);
     joined = joiner->join(submaps, joined, progress);
     show(1);
-    checkFrames(*joiner, joined, submaps.size());
+    checkResult(*joiner, joined, submaps);
     const std::string outcome =
         fmt::format("{}: {} ({}), objective {}, {} iterations", joiner->name(), toString(joined.status),
                     joined.reason, joined.objective, joined.iterations.size());

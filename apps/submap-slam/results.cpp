@@ -17,7 +17,7 @@ void writeResults(const OutputDirectory& out, const GridSubmaps& submaps, const 
   writeMapImage(out.file("map.png"), joined.map, trajectory, joined.frames);
   writeRosMap(out.file("map.yaml"), joined.map);
   writeGridMap(out.file("map.gridmap.gz"), joined.map);
-  writeSimpleMap(out.file("map.simplemap"), submaps, joined.frames);
+  writeSimpleMap(out.file("map.simplemap"), submaps, joined);
   writeScene(out.file("map.3Dscene"), joined.map, trajectory, joined.frames);
   writeTum(out.file("trajectory.tum"), trajectory);
   writeG2o(out.file("graph.g2o"), joined.frames, joined.constraints);

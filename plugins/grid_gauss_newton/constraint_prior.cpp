@@ -1,12 +1,9 @@
 #include "constraint_prior.h"
 
-#include <mrpt/math/wrap2pi.h>
+#include <submap_slam/core/relative_pose.h>
 
-#include <cmath>
 #include <cstdint>
 #include <map>
-
-#include "jacobian.h"
 
 namespace submap_slam::grid_joining {
 namespace {
@@ -33,17 +30,10 @@ ConstraintPrior::ConstraintPrior(const std::vector<Constraint>& constraints, con
   }
 }
 
-Eigen::Vector3d ConstraintPrior::residual(const Link& link, const Frames& frames) {
-  const auto &a = frames[link.from], &b = frames[link.to];
-  const Eigen::Vector3d seen =
-      globalToLocalMotion(a.phi) * Eigen::Vector3d(b.x - a.x, b.y - a.y, b.phi - a.phi);
-  return {seen.x() - link.T_a_b.x, seen.y() - link.T_a_b.y, mrpt::math::wrapToPi(seen.z() - link.T_a_b.phi)};
-}
-
 double ConstraintPrior::cost(const Frames& frames) const {
   double sum = 0;
   for (const Link& link : links_) {
-    const Eigen::Vector3d e = residual(link, frames);
+    const Eigen::Vector3d e = relationError(frames[link.from], frames[link.to], link.T_a_b).e;
     sum += e.dot(link.information * e);
   }
   return sum;
@@ -53,11 +43,7 @@ PoseSystem ConstraintPrior::linearise(const Frames& frames) const {
   PoseSystem system(frames.size());
   for (const Link& link : links_) {
     const std::size_t i = link.from, k = link.to;
-    const Eigen::Vector3d e = residual(link, frames);
-    const Eigen::Matrix3d to = globalToLocalMotion(frames[i].phi);
-    Eigen::Matrix3d from = -to;
-    from(0, 2) = e.y() + link.T_a_b.y;
-    from(1, 2) = -(e.x() + link.T_a_b.x);
+    const auto [e, from, to] = relationError(frames[i], frames[k], link.T_a_b);
     system.gradient[i] += from.transpose() * link.information * e;
     system.gradient[k] += to.transpose() * link.information * e;
     system.addBlock(i, i, from.transpose() * link.information * from);

@@ -32,7 +32,6 @@ class ConstraintPrior {
     mrpt::math::TPose2D T_a_b;
     Eigen::Matrix3d information;
   };
-  static Eigen::Vector3d residual(const Link& link, const Frames& frames);
 
   std::vector<Link> links_;
 };

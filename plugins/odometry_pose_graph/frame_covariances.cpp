@@ -2,7 +2,7 @@
 
 #include <Eigen/LU>
 
-#include "relative_pose.h"
+#include <submap_slam/core/relative_pose.h>
 
 namespace submap_slam::pose_graph {
 namespace {

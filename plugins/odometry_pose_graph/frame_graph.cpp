@@ -4,7 +4,7 @@
 #include <ceres/problem.h>
 #include <mrpt/math/wrap2pi.h>
 
-#include "relative_pose.h"
+#include <submap_slam/core/relative_pose.h>
 #include "residuals.h"
 #include "solver.h"
 

@@ -10,8 +10,8 @@
 #include <cmath>
 #include <optional>
 
+#include <submap_slam/core/relative_pose.h>
 #include "frame_covariances.h"
-#include "relative_pose.h"
 
 namespace submap_slam::pose_graph {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <memory>
 
-#include "relative_pose.h"
+#include <submap_slam/core/relative_pose.h>
 #include "residuals.h"
 #include "solver.h"
 

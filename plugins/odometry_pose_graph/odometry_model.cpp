@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "relative_pose.h"
+#include <submap_slam/core/relative_pose.h>
 
 namespace submap_slam::pose_graph {
 namespace {

@@ -123,6 +123,7 @@ JoinedMap OdometryPoseGraph::join(const GridSubmaps& submaps, const JoinedMap& i
   joined.frames = initial.frames;
   if (submaps.size() < 2) {
     joined.constraints = initial.constraints;
+    joined.nodes = initial.nodes;
     joined.status = JoinStatus::kNothingToJoin;
     joined.reason = "there is only one submap";
     return joined;
@@ -133,7 +134,7 @@ JoinedMap OdometryPoseGraph::join(const GridSubmaps& submaps, const JoinedMap& i
   FusionParams fusion = fusion_;
   fusion.odometry = residualOf(odometry_);
   const FusedGraph fused = fuseOdometry(submaps, found.graph, fusion);
-  joined.nodes = fused.nodes;
+  joined.nodes = fused.nodes.empty() ? initial.nodes : fused.nodes;
   joined.constraints = chainConstraints(fused.frames, submaps);
   append(joined.constraints, found.candidates);
   append(joined.constraints, constraintsByHand(initial.constraints, found.candidates));

@@ -42,6 +42,12 @@ GridSubmaps sampleSubmaps() {
 
 }  // namespace
 
+JoinedMap withFrames(const std::vector<mrpt::poses::CPosePDFGaussian>& frames) {
+  JoinedMap joined;
+  joined.frames = frames;
+  return joined;
+}
+
 TEST(WriteGridMap, MrptReadsTheSameGrid) {
   const TempFolder folder;
   writeGridMap(folder.file("map.gridmap.gz"), sampleGrid());
@@ -66,7 +72,8 @@ TEST(WriteGridMap, GzipHeaderHasNoTime) {
 
 TEST(WriteSimpleMap, HoldsTheScansOfKeyNodesAtTheirGlobalPoses) {
   const TempFolder folder;
-  writeSimpleMap(folder.file("a.simplemap"), sampleSubmaps(), {gaussian(0, 0, 0), gaussian(10, 5, M_PI / 2)});
+  writeSimpleMap(folder.file("a.simplemap"), sampleSubmaps(),
+                 withFrames({gaussian(0, 0, 0), gaussian(10, 5, M_PI / 2)}));
   mrpt::maps::CSimpleMap map;
   ASSERT_TRUE(map.loadFromFile(folder.file("a.simplemap")));
   ASSERT_EQ(map.size(), 2u);
@@ -84,7 +91,8 @@ TEST(WriteSimpleMap, HoldsTheScansOfKeyNodesAtTheirGlobalPoses) {
 
 TEST(WriteSimpleMap, HeadingOfTheFrameIsUncertaintyOfAFarNodesPosition) {
   const TempFolder folder;
-  writeSimpleMap(folder.file("a.simplemap"), sampleSubmaps(), {gaussian(0, 0, 0), gaussian(10, 5, 0)});
+  writeSimpleMap(folder.file("a.simplemap"), sampleSubmaps(),
+                 withFrames({gaussian(0, 0, 0), gaussian(10, 5, 0)}));
   mrpt::maps::CSimpleMap map;
   ASSERT_TRUE(map.loadFromFile(folder.file("a.simplemap")));
   const auto cov = std::dynamic_pointer_cast<mrpt::poses::CPose3DPDFGaussian>(std::get<0>(map.get(1)))->cov;
@@ -97,7 +105,7 @@ TEST(WriteSimpleMap, HeadingOfTheFrameIsUncertaintyOfAFarNodesPosition) {
 
 TEST(WriteSimpleMap, NeedsOneFrameForEachSubmap) {
   const TempFolder folder;
-  EXPECT_THROW(writeSimpleMap(folder.file("a.simplemap"), sampleSubmaps(), {gaussian(0, 0, 0)}),
+  EXPECT_THROW(writeSimpleMap(folder.file("a.simplemap"), sampleSubmaps(), withFrames({gaussian(0, 0, 0)})),
                std::invalid_argument);
 }
 
@@ -129,7 +137,7 @@ TEST(MrptFiles, SameResultsGiveTheSameBytes) {
   const TempFolder folder;
   for (const char* run : {"1", "2"}) {
     writeGridMap(folder.file(std::string(run) + ".gridmap.gz"), sampleGrid());
-    writeSimpleMap(folder.file(std::string(run) + ".simplemap"), sampleSubmaps(), sampleFrames());
+    writeSimpleMap(folder.file(std::string(run) + ".simplemap"), sampleSubmaps(), withFrames(sampleFrames()));
     writeScene(folder.file(std::string(run) + ".3Dscene"), sampleGrid(), sampleTrajectory(), sampleFrames());
   }
   for (const char* kind : {".gridmap.gz", ".simplemap", ".3Dscene"})

@@ -8,11 +8,11 @@
 #include <cmath>
 #include <random>
 
+#include <submap_slam/core/relative_pose.h>
 #include "../mapping/mapped_log.h"
 #include "odometry_pose_graph/frame_covariances.h"
 #include "odometry_pose_graph/loop_search.h"
 #include "odometry_pose_graph/odometry_pose_graph.h"
-#include "odometry_pose_graph/relative_pose.h"
 #include "odometry_pose_graph/residuals.h"
 
 namespace submap_slam::pose_graph {

@@ -50,19 +50,27 @@ JoinedMap chainSubmaps(const GridSubmaps& submaps) {
   return chain;
 }
 
+std::vector<TPose2D> nodePosesOf(const GridSubmaps& submaps, const JoinedMap& joined, std::size_t k) {
+  const auto& nodes = submaps.at(k)->nodes;
+  if (!joined.nodes.empty()) {
+    if (joined.nodes.size() != submaps.size() || joined.nodes[k].size() != nodes.size())
+      throw std::invalid_argument("one pose for each node of each submap is needed");
+    return joined.nodes[k];
+  }
+  std::vector<TPose2D> poses;
+  poses.reserve(nodes.size());
+  for (const SubmapNode& node : nodes) poses.push_back(node.pose);
+  return poses;
+}
+
 Trajectory trajectoryOf(const GridSubmaps& submaps, const JoinedMap& joined) {
   requireOneFrameEach(submaps, joined.frames);
-  const bool moved = !joined.nodes.empty();
-  if (moved && joined.nodes.size() != submaps.size())
-    throw std::invalid_argument("trajectoryOf: nodes of each submap are needed");
   Trajectory trajectory;
   for (std::size_t k = 0; k < submaps.size(); ++k) {
-    const auto& nodes = submaps[k]->nodes;
-    if (moved && joined.nodes[k].size() != nodes.size())
-      throw std::invalid_argument("trajectoryOf: one pose for each node is needed");
     const TPose2D T_w_s = joined.frames[k].mean.asTPose();
-    for (std::size_t n = 0; n < nodes.size(); ++n)
-      trajectory.push_back({nodes[n].stamp, T_w_s + (moved ? joined.nodes[k][n] : nodes[n].pose)});
+    const std::vector<TPose2D> poses = nodePosesOf(submaps, joined, k);
+    for (std::size_t n = 0; n < poses.size(); ++n)
+      trajectory.push_back({submaps[k]->nodes[n].stamp, T_w_s + poses[n]});
   }
   return trajectory;
 }

@@ -21,20 +21,21 @@ namespace {
 using mrpt::poses::CPosePDFGaussian;
 
 /** T_w_node with the uncertainty of T_w_s; the node in its submap counts as exact. */
-CPosePDFGaussian nodePose(const CPosePDFGaussian& frame, const SubmapNode& node) {
+CPosePDFGaussian nodePose(const CPosePDFGaussian& frame, const mrpt::math::TPose2D& T_s_node) {
   CPosePDFGaussian pose = frame;
   // The overload for a plain pose leaves out the lever arm.
-  pose += CPosePDFGaussian(mrpt::poses::CPose2D(node.pose), mrpt::math::CMatrixDouble33::Zero());
+  pose += CPosePDFGaussian(mrpt::poses::CPose2D(T_s_node), mrpt::math::CMatrixDouble33::Zero());
   return pose;
 }
 
-void insertKeyNodes(const GridSubmap& submap, const CPosePDFGaussian& frame, mrpt::maps::CSimpleMap& map) {
+void insertKeyNodes(const GridSubmap& submap, const std::vector<mrpt::math::TPose2D>& nodes,
+                    const CPosePDFGaussian& frame, mrpt::maps::CSimpleMap& map) {
   const std::vector<SubmapScans> scans = submap.scans();
   for (std::size_t i = 0; i < scans.size(); ++i) {
     if (scans[i].empty()) continue;
     const auto observations = mrpt::obs::CSensoryFrame::Create();
     for (const auto& scan : scans[i]) observations->insert(scan);
-    map.insert(mrpt::poses::CPose3DPDFGaussian::Create(nodePose(frame, submap.nodes[i])), observations);
+    map.insert(mrpt::poses::CPose3DPDFGaussian::Create(nodePose(frame, nodes[i])), observations);
   }
 }
 
@@ -86,12 +87,12 @@ void writeGridMap(const std::string& file, const EvidenceGrid& map) {
   writeBytes(file, compressedArchive(map.toOccupancyGrid()));
 }
 
-void writeSimpleMap(const std::string& file, const GridSubmaps& submaps,
-                    const std::vector<CPosePDFGaussian>& frames) {
-  if (submaps.size() != frames.size())
+void writeSimpleMap(const std::string& file, const GridSubmaps& submaps, const JoinedMap& joined) {
+  if (submaps.size() != joined.frames.size())
     throw std::invalid_argument("writeSimpleMap: one frame for each submap is needed");
   mrpt::maps::CSimpleMap map;
-  for (std::size_t i = 0; i < submaps.size(); ++i) insertKeyNodes(*submaps[i], frames[i], map);
+  for (std::size_t i = 0; i < submaps.size(); ++i)
+    insertKeyNodes(*submaps[i], nodePosesOf(submaps, joined, i), joined.frames[i], map);
   writeBytes(file, compressedArchive(map));
 }
 

@@ -64,7 +64,7 @@ void SubmapStore::takeOver(GridSubmap& submap) { takeOver(submap, spill(submap))
 
 SubmapStore::Home SubmapStore::spill(const GridSubmap& submap) {
   const auto member = gzipMember(submap);
-  const Home home{spill_file_, spilled_bytes_};
+  Home home{spill_file_, spilled_bytes_};
   std::ofstream out(spill_file_, spilled_bytes_ == 0 ? std::ios::binary : std::ios::binary | std::ios::app);
   out.write(reinterpret_cast<const char*>(member.data()), static_cast<std::streamsize>(member.size()));
   out.close();
@@ -87,7 +87,7 @@ SubmapStore::BulkPtr SubmapStore::get(const Entry& entry) {
   if (auto bulk = find(entry)) return bulk;
   const std::lock_guard<std::mutex> reading(entry.reading);
   if (auto bulk = find(entry)) return bulk;
-  const BulkPtr bulk = entry.readAgain();
+  BulkPtr bulk = entry.readAgain();
   keep(entry, bulk);
   const std::lock_guard<std::mutex> lock(mutex_);
   ++times_read_;

@@ -71,6 +71,11 @@ struct JoinedMap {
  * predecessor's last pose. */
 JoinedMap chainSubmaps(const GridSubmaps& submaps);
 
+/** T_s_node of the nodes of submap k, where the joiners left them. Throws std::invalid_argument if there are
+ * not as many as the submap has. */
+std::vector<mrpt::math::TPose2D> nodePosesOf(const GridSubmaps& submaps, const JoinedMap& joined,
+                                             std::size_t k);
+
 /** The pose T_w_robot of every node of every submap, in log order. Throws std::invalid_argument if frames or
  * nodes are not as many as those of the submaps. */
 Trajectory trajectoryOf(const GridSubmaps& submaps, const JoinedMap& joined);

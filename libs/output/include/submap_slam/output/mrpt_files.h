@@ -15,10 +15,8 @@ namespace submap_slam {
 void writeGridMap(const std::string& file, const EvidenceGrid& map);
 
 /** Writes an mrpt::maps::CSimpleMap (`.simplemap`): T_w_node of every key node, as CPose3DPDFGaussian with
- * the uncertainty of its submap's frame carried to the node, and its scans.
- * @param frames T_w_s, one for each submap */
-void writeSimpleMap(const std::string& file, const GridSubmaps& submaps,
-                    const std::vector<mrpt::poses::CPosePDFGaussian>& frames);
+ * the uncertainty of its submap's frame carried to the node, and its scans. */
+void writeSimpleMap(const std::string& file, const GridSubmaps& submaps, const JoinedMap& joined);
 
 /** Writes an mrpt::opengl::COpenGLScene (`.3Dscene`) of stock MRPT objects: the map, the trajectory as a
  * line, each submap frame T_w_s as a corner with its number and a 3-sigma ellipse of its position. */

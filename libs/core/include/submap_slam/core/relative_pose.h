@@ -3,7 +3,7 @@
 #include <mrpt/math/TPose2D.h>
 #include <Eigen/Core>
 
-namespace submap_slam::pose_graph {
+namespace submap_slam {
 
 /** What a measured relation of two poses says, linearised (Huang et al. 2024, eq. 6 and 11):
  *
@@ -23,4 +23,4 @@ Eigen::Matrix3d variances(double sigma_xy, double sigma_phi);
 /** Lᵀ of the information Ω = L Lᵀ of a covariance, which weights a residual: ‖Lᵀ e‖² = eᵀ Ω e. */
 Eigen::Matrix3d squareRootInformation(const Eigen::Matrix3d& covariance);
 
-}  // namespace submap_slam::pose_graph
+}  // namespace submap_slam

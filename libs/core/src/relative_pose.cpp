@@ -1,4 +1,4 @@
-#include "relative_pose.h"
+#include <submap_slam/core/relative_pose.h>
 
 #include <mrpt/math/wrap2pi.h>
 #include <Eigen/Cholesky>
@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace submap_slam::pose_graph {
+namespace submap_slam {
 
 RelationError relationError(const mrpt::math::TPose2D& a, const mrpt::math::TPose2D& b,
                             const mrpt::math::TPose2D& T_a_b) {
@@ -29,4 +29,4 @@ Eigen::Matrix3d squareRootInformation(const Eigen::Matrix3d& covariance) {
   return covariance.inverse().llt().matrixU();
 }
 
-}  // namespace submap_slam::pose_graph
+}  // namespace submap_slam
