@@ -24,7 +24,8 @@ target_compile_options(submap_slam_options INTERFACE
   -Wall -Wextra -Wshadow -Wconversion -ffp-contract=off $<$<BOOL:${SUBMAP_SLAM_WERROR}>:-Werror>)
 if(SUBMAP_SLAM_SANITIZE)
   target_compile_options(submap_slam_options INTERFACE
-    -fsanitize=${SUBMAP_SLAM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+    -fsanitize=${SUBMAP_SLAM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all
+    -Wno-maybe-uninitialized)  # sanitized code confuses that warning, as gcc's manual says
   target_link_options(submap_slam_options INTERFACE -fsanitize=${SUBMAP_SLAM_SANITIZE})
   # Under a sanitizer Eigen would align by itself, and free what MRPT's libraries, built without one, allocate.
   target_compile_definitions(submap_slam_options INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
