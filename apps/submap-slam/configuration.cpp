@@ -42,6 +42,14 @@ void describeJoiningParameters(ParameterTable& table, Configuration& config) {
             "Names of the joiners that run one after the other, separated by commas; empty: only the chain "
             "of end poses");
   table.add(
+      "incremental", config.joining.incremental,
+      "map joins while submaps are being built, so that there is a map at every moment; the final result "
+      "is the same");
+  table.add(
+      "update_growth", config.joining.update_growth, "", {1, 1e6},
+      "Then the next map is made when there are about so many times the submaps of the last one; 1: after "
+      "every submap");
+  table.add(
       "map_resolution", config.joining.map_resolution, "m", {0, 10},
       "Cell size of the global map where a joiner leaves its making to the program; 0: that of the submaps, "
       "doubled until the map has at most 20 million cells");

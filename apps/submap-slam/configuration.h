@@ -22,6 +22,8 @@ using JoinerChain = std::vector<std::shared_ptr<SubmapJoiner>>;
 struct JoiningParams {
   std::string chain =
       "odometry_pose_graph, grid_gauss_newton";  ///< names of joiners, in the order in which they run
+  bool incremental = false;                      ///< join while submaps are built
+  double update_growth = 1.1;                    ///< then: submaps at an update / those at the one before
   double map_resolution = 0;                     ///< m per cell of the global map; 0: that of the submaps
   std::string landmark_joiner = "eif_tree";      ///< name of the joiner of landmark submaps
   double memory = 350;                           ///< MB that the program may take while it joins, about

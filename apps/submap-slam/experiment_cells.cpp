@@ -6,6 +6,7 @@
 #include <submap_slam/core/errors.h>
 #include <submap_slam/core/version.h>
 #include <submap_slam/output/json_file.h>
+#include <submap_slam/output/replace_file.h>
 #include <submap_slam/output/trajectory_file.h>
 #include <submap_slam/rawlog/resume_state.h>
 #include <tbb/info.h>
@@ -151,9 +152,8 @@ void runCell(const Cell& cell, int threads) {
   figures["version"] = version();
   figures["seed"] = cell.seed;
   figures["fingerprint"] = fingerprint(cell);
-  const fs::path result = cell.folder / kResultFile, unfinished = cell.folder / "result.json.part";
-  writeJson(unfinished.string(), figures);
-  fs::rename(unfinished, result);
+  replaceFile((cell.folder / kResultFile).string(),
+              [&figures](const std::string& file) { writeJson(file, figures); });
 }
 
 nlohmann::json readResult(const fs::path& folder) {

@@ -43,6 +43,15 @@ void addMapCommand(CLI::App& app, int& exit_code) {
   addRunOptions(*command, options->run);
   addMemoryOption(*command, options->run.configuration);
   addEditsOption(*command, options->edits_file);
+  command
+      ->add_flag_callback(
+          "--incremental",
+          [options] { options->run.configuration.settings.emplace_back("joining.incremental=true"); },
+          "Join while submaps are being built: map.png, trajectory.tum, graph.g2o and constraints.csv are "
+          "always "
+          "those of the submaps so far, updates.csv tells what each update took; as --set "
+          "joining.incremental=true")
+      ->group("Run");
   command->footer(
       "A run that was stopped goes on when the same command is given again.\n"
       "Example: submap-slam map intel.rawlog -o intel --set submaps.max_distance=15");

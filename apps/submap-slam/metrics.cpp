@@ -13,11 +13,17 @@ void addLogMetrics(Metrics& metrics, const LogReport& report) {
   metrics["odometry_path_m"] = report.path_length_m;
 }
 
+LoopCount countLoops(const std::vector<Constraint>& constraints) {
+  LoopCount count;
+  for (const auto& constraint : constraints)
+    if (constraint.inter) ++(constraint.accepted ? count.accepted : count.rejected);
+  return count;
+}
+
 void addJoinMetrics(Metrics& metrics, const GridSubmaps& submaps, const JoinedMap& joined) {
-  std::size_t key_nodes = 0, frames = 0, accepted = 0, rejected = 0;
+  std::size_t key_nodes = 0, frames = 0;
   for (const auto& submap : submaps) key_nodes += submap->keyNodes(), frames += submap->nodes.size();
-  for (const auto& constraint : joined.constraints)
-    if (constraint.inter) ++(constraint.accepted ? accepted : rejected);
+  const LoopCount loops = countLoops(joined.constraints);
   metrics["frames"] = frames;
   metrics["key_nodes"] = key_nodes;
   metrics["submaps"] = submaps.size();
@@ -25,8 +31,8 @@ void addJoinMetrics(Metrics& metrics, const GridSubmaps& submaps, const JoinedMa
   metrics["join_status"] = toString(joined.status);
   metrics["join_reason"] = joined.reason;
   metrics["join_iterations"] = joined.iterations.size();
-  metrics["constraints_accepted"] = accepted;
-  metrics["constraints_rejected"] = rejected;
+  metrics["constraints_accepted"] = loops.accepted;
+  metrics["constraints_rejected"] = loops.rejected;
 }
 
 void addProgressMetrics(Metrics& metrics, const std::vector<SubmapProgress>& progress) {

@@ -19,6 +19,12 @@ using Metrics = nlohmann::ordered_json;
 /** scans, frames, odometry_path_m */
 void addLogMetrics(Metrics& metrics, const LogReport& report);
 
+/** Loop closures that were tried. */
+struct LoopCount {
+  std::size_t accepted = 0, rejected = 0;
+};
+LoopCount countLoops(const std::vector<Constraint>& constraints);
+
 /** frames, key_nodes, submaps, objective, join_status, join_reason, join_iterations, and of the loop closures
  * that were tried constraints_accepted and constraints_rejected */
 void addJoinMetrics(Metrics& metrics, const GridSubmaps& submaps, const JoinedMap& joined);

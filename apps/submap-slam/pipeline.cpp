@@ -9,9 +9,11 @@
 #include <tbb/parallel_pipeline.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
+#include "edited_submaps.h"
+#include "joining.h"
+#include "map_updates.h"
 #include "metrics.h"
 #include "results.h"
 #include "run_files.h"
@@ -62,44 +64,27 @@ void logEdits(const Edits& edits, const JoinerChain& joiners, Reporter& reporter
 }
 
 /** Joins and writes everything but metrics.json. */
-void joinAndWrite(const GridSubmaps& submaps, const Edits& edits, const JoinerChain& joiners,
-                  const OutputDirectory& out, const Configuration& config, Reporter& reporter,
-                  RunSummary& summary) {
+void joinAndWrite(const EditedSubmaps& submaps, Joining& joining, const OutputDirectory& out,
+                  const Configuration& config, Reporter& reporter, RunSummary& summary) {
+  checkEdits(submaps.edits(), submaps.all());
   Metrics& metrics = summary.metrics;
   const StageTimer join_timer;
-  reporter.log(fmt::format("{} submaps", submaps.size()));
-  logEdits(edits, joiners, reporter);
-  const GridSubmaps shown = maskSubmaps(submaps, edits);
-  const auto [joined, stopped] =
-      joinSubmaps(shown, joiners, config.joining.map_resolution, reporter, constraintsOf(edits, submaps));
+  reporter.log(fmt::format("{} submaps", submaps.all().size()));
+  logEdits(submaps.edits(), joining.joiners(), reporter);
+  const JoinOutcome outcome = joining.join(submaps.shown(), reporter, submaps.byHand());
+  const JoinedMap& joined = outcome.map;
   requireObservations(joined.map);
-  summary.interrupted = stopped;
-  addJoinMetrics(metrics, submaps, joined);
+  summary.interrupted = outcome.stopped;
+  addJoinMetrics(metrics, submaps.all(), joined);
   addTime(metrics, "join_", join_timer);
 
   const StageTimer write_timer;
-  writeResults(out, shown, joined);
-  const auto progress = mappingProgress(shown, joined.frames);
+  writeResults(out, submaps.shown(), joined);
+  const auto progress = mappingProgress(submaps.shown(), joined.frames);
   addProgressMetrics(metrics, progress);
   writeText(out.file("submaps.csv"), progressCsv(progress));
   writeRunRecord(out, config, reporter.logLines());
   addTime(metrics, "write_", write_timer);
-}
-
-void checkResult(const SubmapJoiner& joiner, const JoinedMap& joined, const GridSubmaps& submaps) {
-  if (joined.frames.size() != submaps.size())
-    throw PluginError(fmt::format("joiner {}: gave {} frames for {} submaps", joiner.name(),
-                                  joined.frames.size(), submaps.size()));
-  const auto hasItsNodes = [](const auto& poses, const auto& submap) {
-    return poses.size() == submap->nodes.size();
-  };
-  if (!joined.nodes.empty() &&
-      !std::equal(joined.nodes.begin(), joined.nodes.end(), submaps.begin(), submaps.end(), hasItsNodes))
-    throw PluginError(fmt::format("joiner {}: gave other nodes than the submaps have", joiner.name()));
-  for (const auto& frame : joined.frames) {
-    if (!std::isfinite(frame.mean.x()) || !std::isfinite(frame.mean.y()) || !std::isfinite(frame.mean.phi()))
-      throw PluginError(fmt::format("joiner {}: gave a frame that is not finite", joiner.name()));
-  }
 }
 
 }  // namespace
@@ -108,22 +93,30 @@ RunSummary mapRawlog(const std::string& log, const std::string& folder, bool ove
                      const Configuration& config, Reporter& reporter, const Edits& edits) {
   const StageTimer timer;
   RunSummary summary;
-  const JoinerChain joiners = config.joinerChain();  // a wrong name is refused before hours of mapping
+  Joining joining(config.joinerChain(), config.joining.map_resolution);  // a wrong name is refused at once
   StretchSource source(log, config.reader, config.stretches);
   const OutputDirectory out = openFolder(folder, overwrite);
 
   SubmapLogWriter writer = openSubmapFile(out.file(kSubmapFile), log, config, overwrite, reporter);
+  const bool goes_on = writer.state().submaps_done > 0;
   const RbpfGridMapper mapper(config.mapper, config.seed);
-  summary.interrupted = !buildSubmaps(source, mapper, writer, reporter);
+  SubmapFollower follower(out.file(kSubmapFile), makeStore(config, out));
+  EditedSubmaps submaps(edits);
+  MapUpdates updates(follower, submaps, joining, out, config.joining.update_growth, goes_on, reporter);
+  StretchDone show;
+  if (config.joining.incremental)
+    show = [&](double fraction_read) { updates.update(writer.state().submaps_done, fraction_read); };
+  summary.interrupted = !buildSubmaps(source, mapper, writer, reporter, show);
+  summary.submaps_in_map = updates.submapsInMap();
   addTime(summary.metrics, "build_", timer);
   reportLog(source, reporter);
   summary.damaged = !source.damage().empty();
   if (summary.interrupted) return summary;
 
   addLogMetrics(summary.metrics, source.report());
-  const GridSubmaps submaps = readSubmaps(out.file(kSubmapFile), makeStore(config, out));
-  checkEdits(edits, submaps);
-  joinAndWrite(submaps, edits, joiners, out, config, reporter, summary);
+  submaps.add(follower.readNew());
+  requireSubmaps(out.file(kSubmapFile));
+  joinAndWrite(submaps, joining, out, config, reporter, summary);
   addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
   writeJson(out.file(kMetricsFile), summary.metrics);
   return summary;
@@ -150,21 +143,22 @@ RunSummary joinFile(const std::string& submap_file, const std::string& folder, b
                     const Configuration& config, Reporter& reporter, const Edits& edits) {
   const StageTimer timer;
   RunSummary summary;
-  const JoinerChain joiners = config.joinerChain();
+  Joining joining(config.joinerChain(), config.joining.map_resolution);
   requireSubmaps(submap_file);  // before a folder is made for nothing
   const OutputDirectory out(folder, overwrite);
   const RecoveredSubmaps read = readUsableSubmaps(submap_file, makeStore(config, out));
-  checkEdits(edits, read.submaps);
+  EditedSubmaps submaps(edits);
+  submaps.add(read.submaps);
   summary.damaged = !read.damage.empty();
   if (summary.damaged) reporter.warning(read.damage + "; the submaps before it are joined");
-  joinAndWrite(read.submaps, edits, joiners, out, config, reporter, summary);
+  joinAndWrite(submaps, joining, out, config, reporter, summary);
   addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
   writeJson(out.file(kMetricsFile), summary.metrics);
   return summary;
 }
 
 bool buildSubmaps(StretchSource& source, const LocalMapper& mapper, SubmapLogWriter& writer,
-                  Reporter& reporter) {
+                  Reporter& reporter, const StretchDone& on_disk) {
   using tbb::filter_mode;
   const uint64_t built_before = writer.state().stretches_done;
   bool read_all = false, left_out = false;
@@ -195,6 +189,7 @@ bool buildSubmaps(StretchSource& source, const LocalMapper& mapper, SubmapLogWri
     writer.appendStretch(job->submaps);
     frames_built += job->stretch.ownFrames();
     reporter.progress("building submaps", job->fraction_read, frames_built, "scans");
+    if (on_disk) on_disk(job->fraction_read);
   };
 
   reporter.progress("building submaps", 0);
@@ -206,35 +201,6 @@ bool buildSubmaps(StretchSource& source, const LocalMapper& mapper, SubmapLogWri
   const bool complete = read_all && !left_out;
   if (complete) writer.finish();
   return complete;
-}
-
-JoinOutcome joinSubmaps(const GridSubmaps& submaps, const JoinerChain& joiners, double map_resolution,
-                        Reporter& reporter, const std::vector<Constraint>& by_hand) {
-  JoinOutcome result{chainSubmaps(submaps)};
-  JoinedMap& joined = result.map;
-  joined.constraints.insert(joined.constraints.end(), by_hand.begin(), by_hand.end());
-  for (const auto& joiner : joiners) {
-    const auto show = [&](double fraction) { reporter.progress("joining with " + joiner->name(), fraction); };
-    const auto progress = [&](double fraction, const std::string&) {
-      show(fraction);
-      if (stopRequested()) result.stopped = true;
-      return !result.stopped;
-    };
-    show(0);
-    joined = joiner->join(submaps, joined, progress);
-    show(1);
-    checkResult(*joiner, joined, submaps);
-    const std::string outcome =
-        fmt::format("{}: {} ({}), objective {}, {} iterations", joiner->name(), toString(joined.status),
-                    joined.reason, joined.objective, joined.iterations.size());
-    if (joined.status == JoinStatus::kFailed) {
-      reporter.warning(outcome);
-    } else {
-      reporter.log(outcome);
-    }
-  }
-  if (joined.map.observedCells() == 0) joined.map = fuseEvidence(submaps, joined.frames, map_resolution);
-  return result;
 }
 
 }  // namespace submap_slam

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <submap_slam/core/edits.h>
-#include <submap_slam/core/joined_map.h>
 #include <submap_slam/core/local_mapper.h>
 #include <submap_slam/output/output_directory.h>
 #include <submap_slam/rawlog/submap_log.h>
 
+#include <cstddef>
+#include <functional>
 #include <string>
 
 #include "configuration.h"
@@ -19,10 +20,11 @@ namespace submap_slam {
 /** How a run ended and what it says of itself. */
 // NOLINTNEXTLINE(bugprone-exception-escape): takes asserts of the JSON library for throws
 struct RunSummary {
-  Metrics metrics;           ///< what metrics.json holds
-  bool damaged = false;      ///< the log is damaged; the part before the damage was used
-  bool interrupted = false;  ///< a stop signal ended it early
-  bool failed = false;       ///< landmark submaps could not be joined; what is written is not joined
+  Metrics metrics;                 ///< what metrics.json holds
+  bool damaged = false;            ///< the log is damaged; the part before the damage was used
+  bool interrupted = false;        ///< a stop signal ended it early
+  std::size_t submaps_in_map = 0;  ///< of the latest map that an incremental run wrote while it built submaps
+  bool failed = false;             ///< landmark submaps could not be joined; what is written is not joined
 };
 
 /** Maps a rawlog: reads frames, cuts them into stretches, builds their submaps, joins them, writes all
@@ -45,21 +47,15 @@ RunSummary buildRawlog(const std::string& log, const std::string& submap_file, b
 RunSummary joinFile(const std::string& submap_file, const std::string& folder, bool overwrite,
                     const Configuration& config, Reporter& reporter, const Edits& edits = {});
 
+/** Called in log order, when the submaps of a stretch are on disk, with the share of the log that was read up
+ * to its end. */
+using StretchDone = std::function<void(double)>;
+
 /** Builds the submaps of all stretches that `writer` does not have yet, in parallel; each is on disk before
  * the progress goes on. Memory does not grow with the log. After a stop signal no stretch is begun any more;
- * returns false if it left stretches out. */
+ * returns false if it left stretches out.
+ * @param on_disk may be empty; the file does not change while it runs, but stretches are built meanwhile */
 bool buildSubmaps(StretchSource& source, const LocalMapper& mapper, SubmapLogWriter& writer,
-                  Reporter& reporter);
-
-/** What joiners made of submaps. */
-struct JoinOutcome {
-  JoinedMap map;
-  bool stopped = false;  ///< a stop signal ended a joiner early
-};
-
-/** Runs the joiners one after the other, from the chain of end poses, and makes the global map.
- * @param by_hand constraints from the user, which the joiners get with those of the chain */
-JoinOutcome joinSubmaps(const GridSubmaps& submaps, const JoinerChain& joiners, double map_resolution,
-                        Reporter& reporter, const std::vector<Constraint>& by_hand = {});
+                  Reporter& reporter, const StretchDone& on_disk = {});
 
 }  // namespace submap_slam

@@ -4,6 +4,7 @@
 #include <submap_slam/output/graph_file.h>
 #include <submap_slam/output/map_image.h>
 #include <submap_slam/output/mrpt_files.h>
+#include <submap_slam/output/replace_file.h>
 #include <submap_slam/output/ros_map.h>
 #include <submap_slam/output/text_file.h>
 #include <submap_slam/output/trajectory_file.h>
@@ -12,16 +13,24 @@
 
 namespace submap_slam {
 
-void writeResults(const OutputDirectory& out, const GridSubmaps& submaps, const JoinedMap& joined) {
+void writeMapSoFar(const OutputDirectory& out, const GridSubmaps& submaps, const JoinedMap& joined) {
+  using File = std::string;
   const Trajectory trajectory = trajectoryOf(submaps, joined);
-  writeMapImage(out.file("map.png"), joined.map, trajectory, joined.frames);
+  replaceFile(out.file("map.png"),
+              [&](const File& file) { writeMapImage(file, joined.map, trajectory, joined.frames); });
+  replaceFile(out.file("trajectory.tum"), [&](const File& file) { writeTum(file, trajectory); });
+  replaceFile(out.file("graph.g2o"),
+              [&](const File& file) { writeG2o(file, joined.frames, joined.constraints); });
+  replaceFile(out.file("constraints.csv"),
+              [&](const File& file) { writeConstraints(file, joined.constraints); });
+}
+
+void writeResults(const OutputDirectory& out, const GridSubmaps& submaps, const JoinedMap& joined) {
+  writeMapSoFar(out, submaps, joined);
   writeRosMap(out.file("map.yaml"), joined.map);
   writeGridMap(out.file("map.gridmap.gz"), joined.map);
   writeSimpleMap(out.file("map.simplemap"), submaps, joined);
-  writeScene(out.file("map.3Dscene"), joined.map, trajectory, joined.frames);
-  writeTum(out.file("trajectory.tum"), trajectory);
-  writeG2o(out.file("graph.g2o"), joined.frames, joined.constraints);
-  writeConstraints(out.file("constraints.csv"), joined.constraints);
+  writeScene(out.file("map.3Dscene"), joined.map, trajectoryOf(submaps, joined), joined.frames);
 }
 
 void writeRunRecord(const OutputDirectory& out, const Configuration& config,

@@ -1,13 +1,12 @@
 #include "simulation_files.h"
 
+#include <submap_slam/output/replace_file.h>
 #include <submap_slam/output/text_file.h>
 #include <submap_slam/output/trajectory_file.h>
 
-#include <filesystem>
 #include <sstream>
 
 namespace submap_slam {
-namespace fs = std::filesystem;
 
 SimulationFiles::SimulationFiles(const std::string& prefix)
     : log(prefix + ".rawlog"),
@@ -39,9 +38,7 @@ std::size_t writeSimulation(const Scenario& scenario, uint64_t seed, RawlogForm 
   writeText(files.ini, scenarioIni(scenario));
   writeTum(files.truth, log.truth);
   writeTum(files.odometry, odometryOf(log.frames));
-  const std::string unfinished = files.log + ".part";
-  writeRawlog(unfinished, log, form);
-  fs::rename(unfinished, files.log);
+  replaceFile(files.log, [&](const std::string& file) { writeRawlog(file, log, form); });
   return log.frames.size();
 }
 

@@ -32,11 +32,17 @@ std::string howToGoOn(const std::string& submap_file) {
       submap_file, submap_file);
 }
 
+std::string mapSoFar(std::size_t submaps, const std::string& folder) {
+  if (submaps == 0) return "";
+  return fmt::format("\nmap of the first {} submaps: {}", submaps, inFolder(folder, "map.png"));
+}
+
 }  // namespace
 
 std::string mapSummary(const RunSummary& summary, const std::string& folder) {
   const Metrics& m = summary.metrics;
-  if (!m.contains("join_status")) return howToGoOn(inFolder(folder, kSubmapFile));
+  if (!m.contains("join_status"))
+    return howToGoOn(inFolder(folder, kSubmapFile)) + mapSoFar(summary.submaps_in_map, folder);
   std::string text = fmt::format("{} submaps, {} key nodes, {} frames\n", m["submaps"].get<int>(),
                                  m["key_nodes"].get<int>(), m["frames"].get<int>());
   text += fmt::format("joined: {} ({}){}\n", m["join_status"].get<std::string>(),

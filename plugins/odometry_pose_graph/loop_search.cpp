@@ -95,24 +95,15 @@ struct Pending {
   std::size_t entry = 0;  ///< in the list of candidates
 };
 
-class LoopSearch {
- public:
-  LoopSearch(const GridSubmaps& submaps, const LoopSearchParams& params, const HandEdits& by_hand)
-      : submaps_(submaps), params_(params), by_hand_(by_hand) {}
+}  // namespace
 
-  LoopSearchResult run(const std::function<bool(double)>& progress) {
-    result_.graph.frames.push_back({});
-    for (std::size_t k = 0; k < submaps_.size(); ++k) {
-      if (k > 0) extendChain(k);
-      closeLoops(k);
-      if (progress && !progress(static_cast<double>(k + 1) / static_cast<double>(submaps_.size()))) {
-        for (std::size_t rest = k + 1; rest < submaps_.size(); ++rest) extendChain(rest);
-        result_.stopped = k + 1 < submaps_.size();
-        break;
-      }
-    }
-    return std::move(result_);
-  }
+/** A search at some submap. */
+class LoopSearch::State {
+ public:
+  explicit State(const LoopSearchParams& params) : params_(params) {}
+
+  LoopSearchResult search(const GridSubmaps& submaps, const std::function<bool(double)>& progress,
+                          const HandEdits& by_hand);
 
  private:
   struct Task {
@@ -122,14 +113,7 @@ class LoopSearch {
     std::optional<SubmapMatch> match;
   };
 
-  void extendChain(std::size_t k) {
-    const Link link = chainLink(submaps_, k - 1, params_);
-    result_.graph.frames.push_back(result_.graph.frames.back() + link.T_a_b);
-    result_.graph.links.push_back(link);
-    linkByHand(k);
-  }
-
-  void linkByHand(std::size_t k);
+  void appendFrame(FrameGraph& graph) const;
   void closeLoops(std::size_t k);
   std::vector<Task> tasksOf(std::size_t k, const FrameCovariances& covariances) const;
   std::string refusal(std::size_t k, const Task& task, const SubmapMatch& match,
@@ -139,23 +123,48 @@ class LoopSearch {
   bool agree(const Link& a, const Link& b, const FrameCovariances& covariances) const;
   void accept(const Pending& pending, const std::string& reason);
 
-  const GridSubmaps& submaps_;
-  const LoopSearchParams& params_;
-  const HandEdits& by_hand_;
-  LoopSearchResult result_;
-  std::vector<Known> known_;
+  const LoopSearchParams params_;
+  GridSubmaps submaps_;
+  HandEdits by_hand_;
+  LoopSearchResult result_;   // of the submaps that are known
+  std::vector<Known> known_;  // submaps that were searched
   std::vector<Pending> pending_;
 };
 
-/** The links whose newer end is submap k. */
-void LoopSearch::linkByHand(std::size_t k) {
-  const std::size_t before = result_.graph.links.size();
-  for (const Link& link : by_hand_.links)
-    if (std::max(link.from, link.to) == k) result_.graph.links.push_back(link);
-  if (result_.graph.links.size() > before) result_.graph.optimise();
+LoopSearchResult LoopSearch::State::search(const GridSubmaps& submaps,
+                                           const std::function<bool(double)>& progress,
+                                           const HandEdits& by_hand) {
+  submaps_ = submaps;
+  by_hand_ = by_hand;
+  bool go_on = true;
+  while (go_on && known_.size() < submaps.size()) {
+    appendFrame(result_.graph);
+    closeLoops(known_.size());
+    go_on = !progress || progress(static_cast<double>(known_.size()) / static_cast<double>(submaps.size()));
+  }
+  LoopSearchResult result = result_;
+  result.stopped = known_.size() < submaps.size();
+  while (result.graph.frames.size() < submaps.size()) appendFrame(result.graph);
+  return result;
 }
 
-void LoopSearch::closeLoops(std::size_t k) {
+/** The frame of the next submap, where the chain has it, with the links by hand whose newer end it is. */
+void LoopSearch::State::appendFrame(FrameGraph& graph) const {
+  const std::size_t k = graph.frames.size();
+  if (k == 0) {
+    graph.frames.push_back({});
+    return;
+  }
+  const Link link = chainLink(submaps_, k - 1, params_);
+  graph.frames.push_back(graph.frames.back() + link.T_a_b);
+  graph.links.push_back(link);
+  const std::size_t before = graph.links.size();
+  for (const Link& by_hand : by_hand_.links)
+    if (std::max(by_hand.from, by_hand.to) == k) graph.links.push_back(by_hand);
+  if (graph.links.size() > before) graph.optimise();
+}
+
+void LoopSearch::State::closeLoops(std::size_t k) {
   const SubmapMatcher matcher(*submaps_[k], params_.matcher);
   known_.push_back({matcher.surface(), PathCircle(*submaps_[k])});
   if (k < 2) return;
@@ -179,7 +188,8 @@ void LoopSearch::closeLoops(std::size_t k) {
   if (acceptVerified(k, covariances)) result_.graph.optimise();
 }
 
-std::vector<LoopSearch::Task> LoopSearch::tasksOf(std::size_t k, const FrameCovariances& covariances) const {
+std::vector<LoopSearch::State::Task> LoopSearch::State::tasksOf(std::size_t k,
+                                                                const FrameCovariances& covariances) const {
   std::vector<Task> tasks;
   const auto& frames = result_.graph.frames;
   for (std::size_t i = 0; i + 1 < k; ++i) {
@@ -201,8 +211,8 @@ std::vector<LoopSearch::Task> LoopSearch::tasksOf(std::size_t k, const FrameCova
   return tasks;
 }
 
-std::string LoopSearch::refusal(std::size_t k, const Task& task, const SubmapMatch& match,
-                                const Matrix3d& match_covariance) const {
+std::string LoopSearch::State::refusal(std::size_t k, const Task& task, const SubmapMatch& match,
+                                       const Matrix3d& match_covariance) const {
   if (by_hand_.refuses(k, task.older)) return "rejected by hand";
   if (match.hit_share < params_.min_hit_share)
     return fmt::format("overlap too small: {:.2f} of the surfaces", match.hit_share);
@@ -216,8 +226,8 @@ std::string LoopSearch::refusal(std::size_t k, const Task& task, const SubmapMat
   return {};
 }
 
-std::size_t LoopSearch::list(std::size_t k, const Task& task, const Matrix3d& covariance,
-                             const std::string& refused) {
+std::size_t LoopSearch::State::list(std::size_t k, const Task& task, const Matrix3d& covariance,
+                                    const std::string& refused) {
   Constraint candidate;
   candidate.from = submaps_[k]->id;
   candidate.to = submaps_[task.older]->id;
@@ -231,7 +241,7 @@ std::size_t LoopSearch::list(std::size_t k, const Task& task, const Matrix3d& co
   return result_.candidates.size() - 1;
 }
 
-bool LoopSearch::agree(const Link& a, const Link& b, const FrameCovariances& covariances) const {
+bool LoopSearch::State::agree(const Link& a, const Link& b, const FrameCovariances& covariances) const {
   const FrameCovariances::Pair pa{a.from, a.to}, pb{b.from, b.to};
   const auto& frames = result_.graph.frames;
   Eigen::Matrix<double, 6, 1> e;
@@ -245,14 +255,14 @@ bool LoopSearch::agree(const Link& a, const Link& b, const FrameCovariances& cov
   return e.dot(S.ldlt().solve(e)) < kChi2Together;
 }
 
-void LoopSearch::accept(const Pending& pending, const std::string& reason) {
+void LoopSearch::State::accept(const Pending& pending, const std::string& reason) {
   result_.graph.links.push_back(pending.link);
   Constraint& entry = result_.candidates[pending.entry];
   entry.accepted = true;
   entry.reason = reason;
 }
 
-bool LoopSearch::acceptVerified(std::size_t k, const FrameCovariances& covariances) {
+bool LoopSearch::State::acceptVerified(std::size_t k, const FrameCovariances& covariances) {
   const auto isOld = [&](const Pending& p) {
     return p.link.from + static_cast<std::size_t>(params_.witnesses_from) <= k;
   };
@@ -284,11 +294,12 @@ bool LoopSearch::acceptVerified(std::size_t k, const FrameCovariances& covarianc
   return any;
 }
 
-}  // namespace
+LoopSearch::LoopSearch(const LoopSearchParams& params) : state_(std::make_unique<State>(params)) {}
+LoopSearch::~LoopSearch() = default;
 
-LoopSearchResult searchLoops(const GridSubmaps& submaps, const LoopSearchParams& params,
-                             const std::function<bool(double)>& progress, const HandEdits& by_hand) {
-  return LoopSearch(submaps, params, by_hand).run(progress);
+LoopSearchResult LoopSearch::search(const GridSubmaps& submaps, const std::function<bool(double)>& progress,
+                                    const HandEdits& by_hand) {
+  return state_->search(submaps, progress, by_hand);
 }
 
 }  // namespace submap_slam::pose_graph

@@ -4,6 +4,7 @@
 #include <submap_slam/matching/submap_matcher.h>
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -53,10 +54,28 @@ struct LoopSearchResult {
 /** Closes loops: submaps in time order are matched to all older ones that they may overlap, as far as the
  * graph so far says; matches that pass the gates and are borne out by another one go into the graph, which is
  * optimised before the next submap.
- * @param progress called with the share done; false from it ends the search early
- * @param by_hand  its links are in the graph from the newer submap on; no match of a refused pair is used
+ *
+ * What is found for a submap depends on it and the older ones alone, so the search goes on where it was when
+ * submaps are added: the result has the same bits as that of a new search.
  */
-LoopSearchResult searchLoops(const GridSubmaps& submaps, const LoopSearchParams& params,
-                             const std::function<bool(double)>& progress, const HandEdits& by_hand = {});
+class LoopSearch {
+ public:
+  explicit LoopSearch(const LoopSearchParams& params);
+  ~LoopSearch();
+  LoopSearch(const LoopSearch&) = delete;
+  LoopSearch& operator=(const LoopSearch&) = delete;
+
+  /** Searches the submaps that no call before has searched.
+   * @param submaps  those of the call before, and any number behind them
+   * @param progress called with the share done; false from it ends the search early
+   * @param by_hand  its links are in the graph from the newer submap on; no match of a refused pair is used
+   */
+  LoopSearchResult search(const GridSubmaps& submaps, const std::function<bool(double)>& progress,
+                          const HandEdits& by_hand = {});
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace submap_slam::pose_graph

@@ -13,14 +13,15 @@ IMPLEMENTS_MRPT_OBJECT(OdometryPoseGraph, SubmapJoiner, submap_slam)
 
 namespace {
 
-pose_graph::OdometryResidual residualOf(const std::string& name) {
-  using pose_graph::OdometryResidual;
+using namespace pose_graph;
+
+OdometryResidual residualOf(const std::string& name) {
   return name == "off"      ? OdometryResidual::kOff
          : name == "submap" ? OdometryResidual::kSubmap
                             : OdometryResidual::kConsecutive;
 }
 
-std::string describeOdometry(const pose_graph::OdometryModel& odometry) {
+std::string describeOdometry(const OdometryModel& odometry) {
   if (!odometry.known()) return "no odometry to fuse";
   return fmt::format("odometry strays {:.0f} mm and {:.2f} deg per root metre, scaled by {:.3f} and {:.3f}",
                      1e3 * std::sqrt(odometry.variance_xy), std::sqrt(odometry.variance_phi) * 180 / M_PI,
@@ -29,7 +30,7 @@ std::string describeOdometry(const pose_graph::OdometryModel& odometry) {
 
 /** The chain as the fusion leaves it, so that a joiner behind does not go back to the end poses; with less
  * weight where these were contradicted. */
-std::vector<Constraint> chainConstraints(const pose_graph::FrameGraph& graph, const GridSubmaps& submaps) {
+std::vector<Constraint> chainConstraints(const FrameGraph& graph, const GridSubmaps& submaps) {
   std::vector<Constraint> constraints;
   for (const auto& link : graph.links) {
     if (link.loop || link.by_hand || !submaps[link.from]->has_successor) continue;
@@ -66,10 +67,57 @@ void append(std::vector<Constraint>& constraints, const std::vector<Constraint>&
   constraints.insert(constraints.end(), others.begin(), others.end());
 }
 
+/** Loop search that goes on as submaps come, then the fusion of all. */
+class GrowingGraph : public IncrementalJoin {
+ public:
+  GrowingGraph(const LoopSearchParams& search, const FusionParams& fusion)
+      : search_(search), fusion_(fusion) {}
+
+  JoinedMap join(const GridSubmaps& submaps, const JoinedMap& initial,
+                 const ProgressCallback& progress) override;
+
+ private:
+  LoopSearch search_;
+  FusionParams fusion_;
+};
+
+JoinedMap GrowingGraph::join(const GridSubmaps& submaps, const JoinedMap& initial,
+                             const ProgressCallback& progress) {
+  JoinedMap joined;
+  joined.frames = initial.frames;
+  if (submaps.size() < 2) {
+    joined.constraints = initial.constraints;
+    joined.nodes = initial.nodes;
+    joined.status = JoinStatus::kNothingToJoin;
+    joined.reason = "there is only one submap";
+    return joined;
+  }
+  const auto report = [&](double share) { return !progress || progress(share, "closing loops"); };
+  const HandEdits by_hand = handEditsOf(initial.constraints, submaps);
+  const LoopSearchResult found = search_.search(submaps, report, by_hand);
+  const FusedGraph fused = fuseOdometry(submaps, found.graph, fusion_);
+  joined.nodes = fused.nodes.empty() ? initial.nodes : fused.nodes;
+  joined.constraints = chainConstraints(fused.frames, submaps);
+  append(joined.constraints, found.candidates);
+  append(joined.constraints, constraintsByHand(initial.constraints, found.candidates));
+  const FrameCovariances covariances(fused.frames);
+  for (std::size_t i = 0; i < joined.frames.size(); ++i) {
+    joined.frames[i].mean = mrpt::poses::CPose2D(fused.frames.frames[i]);
+    joined.frames[i].cov.asEigen() = covariances.block(i, i);
+  }
+  const auto accepted = std::count_if(found.candidates.begin(), found.candidates.end(),
+                                      [](const Constraint& c) { return c.accepted; });
+  const bool converged = !found.stopped && fused.solution == Solution::kConverged;
+  joined.status = converged ? JoinStatus::kConverged : JoinStatus::kIterationLimit;
+  joined.reason =
+      fmt::format("{} of {} loop candidates accepted{}; {}", accepted, found.candidates.size(),
+                  found.stopped ? ", stopped before the end" : "", describeOdometry(fused.odometry));
+  return joined;
+}
+
 }  // namespace
 
 void OdometryPoseGraph::describe(ParameterTable& table) {
-  using namespace pose_graph;
   table.section(name(), "Loop closure and pose graph with fused odometry (Huang et al. 2024)");
   ChainNoise& chain = search_.chain;
   table.add("chain_sigma_xy", chain.sigma_xy_per_m, "m/√m", {0, 10},
@@ -118,39 +166,13 @@ void OdometryPoseGraph::describe(ParameterTable& table) {
 
 JoinedMap OdometryPoseGraph::join(const GridSubmaps& submaps, const JoinedMap& initial,
                                   const ProgressCallback& progress) const {
-  using namespace pose_graph;
-  JoinedMap joined;
-  joined.frames = initial.frames;
-  if (submaps.size() < 2) {
-    joined.constraints = initial.constraints;
-    joined.nodes = initial.nodes;
-    joined.status = JoinStatus::kNothingToJoin;
-    joined.reason = "there is only one submap";
-    return joined;
-  }
-  const auto report = [&](double share) { return !progress || progress(share, "closing loops"); };
-  const HandEdits by_hand = handEditsOf(initial.constraints, submaps);
-  const LoopSearchResult found = searchLoops(submaps, search_, report, by_hand);
+  return incremental()->join(submaps, initial, progress);
+}
+
+std::unique_ptr<IncrementalJoin> OdometryPoseGraph::incremental() const {
   FusionParams fusion = fusion_;
   fusion.odometry = residualOf(odometry_);
-  const FusedGraph fused = fuseOdometry(submaps, found.graph, fusion);
-  joined.nodes = fused.nodes.empty() ? initial.nodes : fused.nodes;
-  joined.constraints = chainConstraints(fused.frames, submaps);
-  append(joined.constraints, found.candidates);
-  append(joined.constraints, constraintsByHand(initial.constraints, found.candidates));
-  const FrameCovariances covariances(fused.frames);
-  for (std::size_t i = 0; i < joined.frames.size(); ++i) {
-    joined.frames[i].mean = mrpt::poses::CPose2D(fused.frames.frames[i]);
-    joined.frames[i].cov.asEigen() = covariances.block(i, i);
-  }
-  const auto accepted = std::count_if(found.candidates.begin(), found.candidates.end(),
-                                      [](const Constraint& c) { return c.accepted; });
-  const bool converged = !found.stopped && fused.solution == Solution::kConverged;
-  joined.status = converged ? JoinStatus::kConverged : JoinStatus::kIterationLimit;
-  joined.reason =
-      fmt::format("{} of {} loop candidates accepted{}; {}", accepted, found.candidates.size(),
-                  found.stopped ? ", stopped before the end" : "", describeOdometry(fused.odometry));
-  return joined;
+  return std::make_unique<GrowingGraph>(search_, fusion);
 }
 
 }  // namespace submap_slam

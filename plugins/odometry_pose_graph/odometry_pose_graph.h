@@ -26,6 +26,9 @@ class OdometryPoseGraph : public SubmapJoiner {
   JoinedMap join(const GridSubmaps& submaps, const JoinedMap& initial,
                  const ProgressCallback& progress) const override;
 
+  /** Searches each submap once; nodes and frames are fused anew each time. */
+  std::unique_ptr<IncrementalJoin> incremental() const override;
+
  private:
   pose_graph::LoopSearchParams search_;
   pose_graph::FusionParams fusion_;

@@ -40,6 +40,7 @@ TEST(Plugins, ALoadedJoinerCanBeListedConfiguredAndRun) {
   joiner->describe(table);
   table.set("sample.weight=0.75");
   EXPECT_EQ(joiner->join({}, {}, {}).objective, 0.75);
+  EXPECT_EQ(joiner->incremental()->join({}, {}, {}).objective, 0.75);
   EXPECT_EQ(joinerNamed("sample")->join({}, {}, {}).objective, 0.25) << "every object has its own parameters";
 }
 

@@ -165,7 +165,7 @@ TEST(LoopSearch, StraightensABentChain) {
   const BentLoop loop(0.06);
   const double bent = loop.worst(meansOf(chainSubmaps(loop.submaps)));
   ASSERT_GT(bent, 0.8);
-  const auto found = searchLoops(loop.submaps, {}, {});
+  const auto found = LoopSearch({}).search(loop.submaps, {});
   EXPECT_LT(loop.worst(found.graph.frames), 0.5 * bent);
   for (const auto& c : found.candidates) {
     EXPECT_FALSE(c.reason.empty());
@@ -179,18 +179,18 @@ TEST(LoopSearch, StraightensABentChain) {
 
 TEST(LoopSearch, StopsWhenAskedTo) {
   const BentLoop loop(0);
-  const auto found = searchLoops(loop.submaps, {}, [](double) { return false; });
+  const auto found = LoopSearch({}).search(loop.submaps, [](double) { return false; });
   EXPECT_EQ(found.graph.frames.size(), loop.submaps.size());
   EXPECT_TRUE(found.candidates.empty());
   EXPECT_TRUE(found.stopped);
-  EXPECT_FALSE(searchLoops(loop.submaps, {}, {}).stopped);
+  EXPECT_FALSE(LoopSearch({}).search(loop.submaps, {}).stopped);
 }
 
 TEST(LoopSearch, AGapInTheLogSaysNothingOfTheNextSubmap) {
   const BentLoop loop(0);
   loop.submaps[2]->has_successor = false;
   const LoopSearchParams params;
-  const auto found = searchLoops(loop.submaps, params, [](double) { return false; });
+  const auto found = LoopSearch(params).search(loop.submaps, [](double) { return false; });
   EXPECT_GE(found.graph.links[2].covariance(0, 0), 1e4);
   EXPECT_LT(found.graph.links[1].covariance(0, 0), 1);
 }
@@ -198,7 +198,7 @@ TEST(LoopSearch, AGapInTheLogSaysNothingOfTheNextSubmap) {
 TEST(LoopSearch, SubmapsWithoutNodesAreOnlyChained) {
   const BentLoop loop(0);
   loop.submaps[1]->nodes.clear();
-  const auto found = searchLoops(loop.submaps, {}, {});
+  const auto found = LoopSearch({}).search(loop.submaps, {});
   EXPECT_EQ(found.graph.frames.size(), loop.submaps.size());
   for (const auto& frame : found.graph.frames) EXPECT_TRUE(std::isfinite(frame.x + frame.y + frame.phi));
   for (const auto& c : found.candidates) EXPECT_FALSE(c.accepted && (c.from == 1 || c.to == 1));
@@ -231,6 +231,43 @@ TEST(OdometryPoseGraph, OneSubmapIsNothingToJoin) {
   const JoinedMap joined = OdometryPoseGraph().join(one, chainSubmaps(one), {});
   EXPECT_EQ(joined.status, JoinStatus::kNothingToJoin);
   EXPECT_EQ(joined.frames.size(), 1u);
+}
+
+void expectSameBits(const JoinedMap& a, const JoinedMap& b) {
+  EXPECT_EQ(a.reason, b.reason);
+  EXPECT_EQ(a.nodes, b.nodes);
+  ASSERT_EQ(a.frames.size(), b.frames.size());
+  for (std::size_t k = 0; k < a.frames.size(); ++k) {
+    EXPECT_EQ(a.frames[k].mean.asTPose(), b.frames[k].mean.asTPose()) << k;
+    EXPECT_EQ(a.frames[k].cov.asEigen(), b.frames[k].cov.asEigen()) << k;
+  }
+  ASSERT_EQ(a.constraints.size(), b.constraints.size());
+  for (std::size_t c = 0; c < a.constraints.size(); ++c) {
+    EXPECT_EQ(a.constraints[c].T_a_b.mean.asTPose(), b.constraints[c].T_a_b.mean.asTPose()) << c;
+    EXPECT_EQ(a.constraints[c].T_a_b.cov.asEigen(), b.constraints[c].T_a_b.cov.asEigen()) << c;
+    EXPECT_EQ(a.constraints[c].reason, b.constraints[c].reason) << c;
+  }
+}
+
+TEST(OdometryPoseGraph, AddingSubmapsGivesWhatAllAtOnceGive) {
+  const BentLoop loop(0.03);
+  const OdometryPoseGraph joiner;
+  const auto growing = joiner.incremental();
+  for (const std::size_t count : {std::size_t{1}, std::size_t{3}, loop.submaps.size(), loop.submaps.size()}) {
+    const GridSubmaps some(loop.submaps.begin(), loop.submaps.begin() + static_cast<std::ptrdiff_t>(count));
+    const JoinedMap initial = chainSubmaps(some);
+    expectSameBits(growing->join(some, initial, {}), joiner.join(some, initial, {}));
+  }
+}
+
+TEST(OdometryPoseGraph, GoesOnAfterAStop) {
+  const BentLoop loop(0.03);
+  const OdometryPoseGraph joiner;
+  const JoinedMap initial = chainSubmaps(loop.submaps);
+  const auto growing = joiner.incremental();
+  const auto stop = [](double, const std::string&) { return false; };
+  EXPECT_THAT(growing->join(loop.submaps, initial, stop).reason, ::testing::HasSubstr("stopped"));
+  expectSameBits(growing->join(loop.submaps, initial, {}), joiner.join(loop.submaps, initial, {}));
 }
 
 /** A loop closure that the joiner finds by itself. */

@@ -58,6 +58,25 @@ TEST(SubmapLog, RoundTrip) {
   }
 }
 
+TEST(SubmapLog, AFollowerReadsWhatIsNew) {
+  TempFolder temp;
+  const auto file = temp.file("s.rawlog");
+  SubmapLogWriter writer(file, sampleRun());
+  const auto store = SubmapStore::create(0, temp.file("spill"));
+  for (const auto& keeper : {std::shared_ptr<SubmapStore>{}, store}) {
+    SubmapFollower follower(file, keeper);
+    follower.readNew();
+    EXPECT_TRUE(follower.readNew().empty());
+    writer.appendStretch({sampleSubmap(0)});
+    ASSERT_EQ(follower.readNew().size(), 1u);
+    writer.appendStretch({sampleSubmap(1), sampleSubmap(2)});
+    const GridSubmaps submaps = follower.readNew();
+    ASSERT_EQ(submaps.size(), 2u);
+    EXPECT_EQ(gzipMember(*submaps[0]), gzipMember(*sampleSubmap(1)));
+    EXPECT_EQ(gzipMember(*submaps[1]), gzipMember(*sampleSubmap(2)));
+  }
+}
+
 TEST(SubmapLog, StockReaderReadsAllObjects) {
   TempFolder temp;
   const auto file = temp.file("s.rawlog");

@@ -102,10 +102,19 @@ void readAll(const std::string& file, SubmapLogReader& reader, const std::shared
 
 }  // namespace
 
-GridSubmaps readSubmaps(const std::string& file, const std::shared_ptr<SubmapStore>& store) {
-  SubmapLogReader reader(file);
+SubmapFollower::SubmapFollower(std::string file, std::shared_ptr<SubmapStore> store)
+    : file_(std::move(file)), store_(std::move(store)) {}
+
+GridSubmaps SubmapFollower::readNew() {
+  SubmapLogReader reader(file_, bytes_read_);
   GridSubmaps submaps;
-  readAll(file, reader, store, submaps);
+  readAll(file_, reader, store_, submaps);
+  bytes_read_ = reader.validBytes();
+  return submaps;
+}
+
+GridSubmaps readSubmaps(const std::string& file, const std::shared_ptr<SubmapStore>& store) {
+  GridSubmaps submaps = SubmapFollower(file, store).readNew();
   if (submaps.empty()) throw InputError(fmt::format("{}: holds no submaps", file));
   return submaps;
 }

@@ -4,7 +4,23 @@
 #include <submap_slam/core/joiner.h>
 #include <submap_slam/core/progress.h>
 
+#include <memory>
+
 namespace submap_slam {
+
+/** A joining that goes on as submaps come. After an exception it is of no use any more. */
+class IncrementalJoin {
+ public:
+  virtual ~IncrementalJoin() = default;
+
+  /** Joins what there is by now. Parameters and result are those of SubmapJoiner::join, to the same bits, but
+   * what calls before found need not be found again.
+   * @param submaps the same objects as in the call before, and any number behind them
+   * @param initial constraints by hand may come with the submaps that they are of; otherwise they are always
+   * the same */
+  virtual JoinedMap join(const GridSubmaps& submaps, const JoinedMap& initial,
+                         const ProgressCallback& progress) = 0;
+};
 
 /** Finds the frames of grid submaps (and the map) that fit together best. */
 class SubmapJoiner : public Joiner {
@@ -22,6 +38,10 @@ class SubmapJoiner : public Joiner {
    * number of threads. */
   virtual JoinedMap join(const GridSubmaps& submaps, const JoinedMap& initial,
                          const ProgressCallback& progress) const = 0;
+
+  /** Begins a joining to which submaps can be added; it uses this joiner, which must outlive it. Unless a
+   * joiner knows better, everything is joined anew each time. */
+  virtual std::unique_ptr<IncrementalJoin> incremental() const;
 };
 
 }  // namespace submap_slam

@@ -45,6 +45,22 @@ class SubmapLogReader {
   std::unique_ptr<Impl> impl_;
 };
 
+/** Reads a file of submaps while it is written. */
+class SubmapFollower {
+ public:
+  /** @param store takes evidence and scans; null: they stay in memory */
+  explicit SubmapFollower(std::string file, std::shared_ptr<SubmapStore> store = nullptr);
+
+  /** The submaps that are new since the last call, unloaded; not while one is being written. Throws as
+   * SubmapLogReader. */
+  GridSubmaps readNew();
+
+ private:
+  std::string file_;
+  std::shared_ptr<SubmapStore> store_;
+  uint64_t bytes_read_ = 0;
+};
+
 /** All submaps of a file, unloaded (read their evidence with LoadedEvidence, their scans with
  * GridSubmap::scans). Throws InputError if it is damaged, empty or holds something else; the text names the
  * offset and how many submaps before it are valid.

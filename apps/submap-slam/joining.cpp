@@ -1,0 +1,92 @@
+#include "joining.h"
+
+#include <fmt/format.h>
+#include <submap_slam/core/errors.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "stage_timer.h"
+#include "stop_signal.h"
+
+namespace submap_slam {
+namespace {
+
+void checkResult(const SubmapJoiner& joiner, const JoinedMap& joined, const GridSubmaps& submaps) {
+  if (joined.frames.size() != submaps.size())
+    throw PluginError(fmt::format("joiner {}: gave {} frames for {} submaps", joiner.name(),
+                                  joined.frames.size(), submaps.size()));
+  const auto hasItsNodes = [](const auto& poses, const auto& submap) {
+    return poses.size() == submap->nodes.size();
+  };
+  if (!joined.nodes.empty() &&
+      !std::equal(joined.nodes.begin(), joined.nodes.end(), submaps.begin(), submaps.end(), hasItsNodes))
+    throw PluginError(fmt::format("joiner {}: gave other nodes than the submaps have", joiner.name()));
+  for (const auto& frame : joined.frames) {
+    if (!std::isfinite(frame.mean.x()) || !std::isfinite(frame.mean.y()) || !std::isfinite(frame.mean.phi()))
+      throw PluginError(fmt::format("joiner {}: gave a frame that is not finite", joiner.name()));
+  }
+}
+
+void reportResult(const SubmapJoiner& joiner, const JoinedMap& joined, Reporter& reporter) {
+  const std::string outcome =
+      fmt::format("{}: {} ({}), objective {}, {} iterations", joiner.name(), toString(joined.status),
+                  joined.reason, joined.objective, joined.iterations.size());
+  if (joined.status == JoinStatus::kFailed) {
+    reporter.warning(outcome);
+  } else {
+    reporter.log(outcome);
+  }
+}
+
+}  // namespace
+
+Joining::Joining(JoinerChain joiners, double map_resolution)
+    : joiners_(std::move(joiners)), map_resolution_(map_resolution) {
+  begin();
+}
+
+void Joining::begin() {
+  at_work_.clear();
+  for (const auto& joiner : joiners_) at_work_.push_back(joiner->incremental());
+}
+
+JoinOutcome Joining::join(const GridSubmaps& submaps, Reporter& reporter,
+                          const std::vector<Constraint>& by_hand) {
+  try {
+    return goOn(submaps, reporter, by_hand);
+  } catch (...) {
+    begin();
+    throw;
+  }
+}
+
+JoinOutcome Joining::goOn(const GridSubmaps& submaps, Reporter& reporter,
+                          const std::vector<Constraint>& by_hand) {
+  JoinOutcome result{chainSubmaps(submaps), false, {}};
+  JoinedMap& joined = result.map;
+  joined.constraints.insert(joined.constraints.end(), by_hand.begin(), by_hand.end());
+  for (std::size_t k = 0; k < joiners_.size(); ++k) {
+    const SubmapJoiner& joiner = *joiners_[k];
+    const StageTimer timer;
+    const auto show = [&](double fraction) { reporter.progress("joining with " + joiner.name(), fraction); };
+    const auto progress = [&](double fraction, const std::string&) {
+      show(fraction);
+      if (stopRequested()) result.stopped = true;
+      return !result.stopped;
+    };
+    show(0);
+    joined = at_work_[k]->join(submaps, joined, progress);
+    show(1);
+    checkResult(joiner, joined, submaps);
+    reportResult(joiner, joined, reporter);
+    result.wall_s.push_back(timer.elapsed().wall_s);
+  }
+  const StageTimer fuse_timer;
+  if (joined.map.observedCells() == 0) joined.map = fuseEvidence(submaps, joined.frames, map_resolution_);
+  result.wall_s.push_back(fuse_timer.elapsed().wall_s);
+  return result;
+}
+
+}  // namespace submap_slam
