@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <submap_slam/core/errors.h>
 #include <submap_slam/mapping/grid_mapper.h>
+#include <submap_slam/mapping/node_refinement.h>
 #include <submap_slam/output/json_file.h>
 #include <submap_slam/output/text_file.h>
 #include <tbb/global_control.h>
@@ -61,31 +62,6 @@ void logEdits(const Edits& edits, const JoinerChain& joiners, Reporter& reporter
     reporter.warning(edits.file + ": only masks count, [joining] chain names no joiner");
 }
 
-/** Joins and writes everything but metrics.json. */
-void joinAndWrite(const GridSubmaps& submaps, const Edits& edits, const JoinerChain& joiners,
-                  const OutputDirectory& out, const Configuration& config, Reporter& reporter,
-                  RunSummary& summary) {
-  Metrics& metrics = summary.metrics;
-  const StageTimer join_timer;
-  reporter.log(fmt::format("{} submaps", submaps.size()));
-  logEdits(edits, joiners, reporter);
-  const GridSubmaps shown = maskSubmaps(submaps, edits);
-  const auto [joined, stopped] =
-      joinSubmaps(shown, joiners, config.joining.map_resolution, reporter, constraintsOf(edits, submaps));
-  requireObservations(joined.map);
-  summary.interrupted = stopped;
-  addJoinMetrics(metrics, submaps, joined);
-  addTime(metrics, "join_", join_timer);
-
-  const StageTimer write_timer;
-  writeResults(out, shown, joined);
-  const auto progress = mappingProgress(shown, joined.frames);
-  addProgressMetrics(metrics, progress);
-  writeText(out.file("submaps.csv"), progressCsv(progress));
-  writeRunRecord(out, config, reporter.logLines());
-  addTime(metrics, "write_", write_timer);
-}
-
 void checkResult(const SubmapJoiner& joiner, const JoinedMap& joined, const GridSubmaps& submaps) {
   if (joined.frames.size() != submaps.size())
     throw PluginError(fmt::format("joiner {}: gave {} frames for {} submaps", joiner.name(),
@@ -100,6 +76,79 @@ void checkResult(const SubmapJoiner& joiner, const JoinedMap& joined, const Grid
     if (!std::isfinite(frame.mean.x()) || !std::isfinite(frame.mean.y()) || !std::isfinite(frame.mean.phi()))
       throw PluginError(fmt::format("joiner {}: gave a frame that is not finite", joiner.name()));
   }
+}
+
+/** Runs the joiners one after the other from what `initial` says and makes the global map. */
+JoinOutcome runJoiners(const GridSubmaps& submaps, JoinedMap initial, const JoinerChain& joiners,
+                       double map_resolution, Reporter& reporter) {
+  JoinOutcome result{std::move(initial)};
+  JoinedMap& joined = result.map;
+  for (const auto& joiner : joiners) {
+    const auto show = [&](double fraction) { reporter.progress("joining with " + joiner->name(), fraction); };
+    const auto progress = [&](double fraction, const std::string&) {
+      show(fraction);
+      if (stopRequested()) result.stopped = true;
+      return !result.stopped;
+    };
+    show(0);
+    joined = joiner->join(submaps, joined, progress);
+    show(1);
+    checkResult(*joiner, joined, submaps);
+    const std::string outcome =
+        fmt::format("{}: {} ({}), objective {}, {} iterations", joiner->name(), toString(joined.status),
+                    joined.reason, joined.objective, joined.iterations.size());
+    if (joined.status == JoinStatus::kFailed) {
+      reporter.warning(outcome);
+    } else {
+      reporter.log(outcome);
+    }
+  }
+  if (joined.map.observedCells() == 0) joined.map = fuseEvidence(submaps, joined.frames, map_resolution);
+  return result;
+}
+
+/** Rounds of [node_refinement]: new submaps from better poses of their nodes, joined again by the last
+ * joiner.
+ */
+void refineAndJoin(GridSubmaps& submaps, JoinOutcome& outcome, const JoinerChain& joiners,
+                   const Configuration& config, SubmapStore& store, Reporter& reporter) {
+  const JoinerChain last(joiners.empty() ? joiners.end() : joiners.end() - 1, joiners.end());
+  for (int round = 1; round <= config.node_refinement.rounds && !outcome.stopped; ++round) {
+    reporter.progress(fmt::format("refining nodes, round {}", round), 0);
+    auto refined = refineNodes(submaps, outcome.map, config.mapper, config.node_refinement,
+                               [&](GridSubmap& submap) { store.takeOver(submap); });
+    reporter.log(fmt::format("nodes refined, round {}: moved by {:.4f} m at the mean, {:.4f} m at most",
+                             round, refined.mean_move, refined.max_move));
+    submaps = std::move(refined.submaps);
+    outcome = runJoiners(submaps, std::move(refined.joined), last, config.joining.map_resolution, reporter);
+  }
+}
+
+/** Joins and writes everything but metrics.json. */
+void joinAndWrite(const GridSubmaps& submaps, const Edits& edits, const JoinerChain& joiners,
+                  const OutputDirectory& out, const Configuration& config, SubmapStore& store,
+                  Reporter& reporter, RunSummary& summary) {
+  Metrics& metrics = summary.metrics;
+  const StageTimer join_timer;
+  reporter.log(fmt::format("{} submaps", submaps.size()));
+  logEdits(edits, joiners, reporter);
+  GridSubmaps shown = maskSubmaps(submaps, edits);
+  JoinOutcome outcome =
+      joinSubmaps(shown, joiners, config.joining.map_resolution, reporter, constraintsOf(edits, submaps));
+  refineAndJoin(shown, outcome, joiners, config, store, reporter);
+  const JoinedMap& joined = outcome.map;
+  requireObservations(joined.map);
+  summary.interrupted = outcome.stopped;
+  addJoinMetrics(metrics, submaps, joined);
+  addTime(metrics, "join_", join_timer);
+
+  const StageTimer write_timer;
+  writeResults(out, shown, joined);
+  const auto progress = mappingProgress(shown, joined.frames);
+  addProgressMetrics(metrics, progress);
+  writeText(out.file("submaps.csv"), progressCsv(progress));
+  writeRunRecord(out, config, reporter.logLines());
+  addTime(metrics, "write_", write_timer);
 }
 
 }  // namespace
@@ -121,9 +170,10 @@ RunSummary mapRawlog(const std::string& log, const std::string& folder, bool ove
   if (summary.interrupted) return summary;
 
   addLogMetrics(summary.metrics, source.report());
-  const GridSubmaps submaps = readSubmaps(out.file(kSubmapFile), makeStore(config, out));
+  const auto store = makeStore(config, out);
+  const GridSubmaps submaps = readSubmaps(out.file(kSubmapFile), store);
   checkEdits(edits, submaps);
-  joinAndWrite(submaps, edits, joiners, out, config, reporter, summary);
+  joinAndWrite(submaps, edits, joiners, out, config, *store, reporter, summary);
   addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
   writeJson(out.file(kMetricsFile), summary.metrics);
   return summary;
@@ -153,11 +203,12 @@ RunSummary joinFile(const std::string& submap_file, const std::string& folder, b
   const JoinerChain joiners = config.joinerChain();
   requireSubmaps(submap_file);  // before a folder is made for nothing
   const OutputDirectory out(folder, overwrite);
-  const RecoveredSubmaps read = readUsableSubmaps(submap_file, makeStore(config, out));
+  const auto store = makeStore(config, out);
+  const RecoveredSubmaps read = readUsableSubmaps(submap_file, store);
   checkEdits(edits, read.submaps);
   summary.damaged = !read.damage.empty();
   if (summary.damaged) reporter.warning(read.damage + "; the submaps before it are joined");
-  joinAndWrite(read.submaps, edits, joiners, out, config, reporter, summary);
+  joinAndWrite(read.submaps, edits, joiners, out, config, *store, reporter, summary);
   addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
   writeJson(out.file(kMetricsFile), summary.metrics);
   return summary;
@@ -210,31 +261,9 @@ bool buildSubmaps(StretchSource& source, const LocalMapper& mapper, SubmapLogWri
 
 JoinOutcome joinSubmaps(const GridSubmaps& submaps, const JoinerChain& joiners, double map_resolution,
                         Reporter& reporter, const std::vector<Constraint>& by_hand) {
-  JoinOutcome result{chainSubmaps(submaps)};
-  JoinedMap& joined = result.map;
-  joined.constraints.insert(joined.constraints.end(), by_hand.begin(), by_hand.end());
-  for (const auto& joiner : joiners) {
-    const auto show = [&](double fraction) { reporter.progress("joining with " + joiner->name(), fraction); };
-    const auto progress = [&](double fraction, const std::string&) {
-      show(fraction);
-      if (stopRequested()) result.stopped = true;
-      return !result.stopped;
-    };
-    show(0);
-    joined = joiner->join(submaps, joined, progress);
-    show(1);
-    checkResult(*joiner, joined, submaps);
-    const std::string outcome =
-        fmt::format("{}: {} ({}), objective {}, {} iterations", joiner->name(), toString(joined.status),
-                    joined.reason, joined.objective, joined.iterations.size());
-    if (joined.status == JoinStatus::kFailed) {
-      reporter.warning(outcome);
-    } else {
-      reporter.log(outcome);
-    }
-  }
-  if (joined.map.observedCells() == 0) joined.map = fuseEvidence(submaps, joined.frames, map_resolution);
-  return result;
+  JoinedMap chained = chainSubmaps(submaps);
+  chained.constraints.insert(chained.constraints.end(), by_hand.begin(), by_hand.end());
+  return runJoiners(submaps, std::move(chained), joiners, map_resolution, reporter);
 }
 
 }  // namespace submap_slam
