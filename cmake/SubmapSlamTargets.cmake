@@ -25,6 +25,7 @@ target_compile_options(submap_slam_options INTERFACE
 if(SUBMAP_SLAM_SANITIZE)
   target_compile_options(submap_slam_options INTERFACE
     -fsanitize=${SUBMAP_SLAM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all
+    -fno-sanitize=alignment  # of MRPT's virtual bases gcc asks the alignment of whole objects
     -Wno-maybe-uninitialized)  # sanitized code confuses that warning, as gcc's manual says
   target_link_options(submap_slam_options INTERFACE -fsanitize=${SUBMAP_SLAM_SANITIZE})
   # Under a sanitizer Eigen would align by itself, and free what MRPT's libraries, built without one, allocate.

@@ -59,6 +59,7 @@ void describeJoiningParameters(ParameterTable& table, Configuration& config) {
       "About how much memory the program may take while it joins. What is left beside the map and the "
       "joiners' own data keeps submaps; those that do not fit are read again when they are needed, with "
       "the same result");
+  describe(table, config.node_refinement);
   table.section("plugins", "Shared libraries with joiners");
   table.add("load", config.plugins, "Plugin files to load besides the installed ones, separated by commas");
   for (const auto& joiner : config.joiners) joiner->describe(table);

@@ -4,6 +4,7 @@
 #include <submap_slam/core/parameters.h>
 #include <submap_slam/core/submap_joiner.h>
 #include <submap_slam/mapping/grid_mapper.h>
+#include <submap_slam/mapping/node_refinement.h>
 #include <submap_slam/mapping/stretch_splitter.h>
 #include <submap_slam/rawlog/rawlog_reader.h>
 
@@ -56,6 +57,7 @@ class Configuration {
   GridMapperParams mapper;
   uint64_t seed = 1;
   JoiningParams joining;
+  NodeRefinementParams node_refinement;
   std::string plugins;                           ///< [plugins] load, files
   std::vector<std::shared_ptr<Joiner>> joiners;  ///< all that are available, sorted by name
   ParameterTable table;                          ///< points into the members above and into the joiners

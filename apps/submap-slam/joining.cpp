@@ -40,6 +40,32 @@ void reportResult(const SubmapJoiner& joiner, const JoinedMap& joined, Reporter&
   }
 }
 
+/** Runs a joiner from where the one before it came to. */
+void run(const SubmapJoiner& joiner, IncrementalJoin& at_work, const GridSubmaps& submaps,
+         JoinOutcome& result, Reporter& reporter) {
+  const StageTimer timer;
+  const auto show = [&](double fraction) { reporter.progress("joining with " + joiner.name(), fraction); };
+  const auto progress = [&](double fraction, const std::string&) {
+    show(fraction);
+    if (stopRequested()) result.stopped = true;
+    return !result.stopped;
+  };
+  show(0);
+  result.map = at_work.join(submaps, result.map, progress);
+  show(1);
+  checkResult(joiner, result.map, submaps);
+  reportResult(joiner, result.map, reporter);
+  result.wall_s.push_back(timer.elapsed().wall_s);
+}
+
+/** Makes the map that a joiner left over. */
+void fuse(const GridSubmaps& submaps, double map_resolution, JoinOutcome& result) {
+  const StageTimer timer;
+  JoinedMap& joined = result.map;
+  if (joined.map.observedCells() == 0) joined.map = fuseEvidence(submaps, joined.frames, map_resolution);
+  result.wall_s.push_back(timer.elapsed().wall_s);
+}
+
 }  // namespace
 
 Joining::Joining(JoinerChain joiners, double map_resolution)
@@ -65,27 +91,18 @@ JoinOutcome Joining::join(const GridSubmaps& submaps, Reporter& reporter,
 JoinOutcome Joining::goOn(const GridSubmaps& submaps, Reporter& reporter,
                           const std::vector<Constraint>& by_hand) {
   JoinOutcome result{chainSubmaps(submaps), false, {}};
-  JoinedMap& joined = result.map;
-  joined.constraints.insert(joined.constraints.end(), by_hand.begin(), by_hand.end());
-  for (std::size_t k = 0; k < joiners_.size(); ++k) {
-    const SubmapJoiner& joiner = *joiners_[k];
-    const StageTimer timer;
-    const auto show = [&](double fraction) { reporter.progress("joining with " + joiner.name(), fraction); };
-    const auto progress = [&](double fraction, const std::string&) {
-      show(fraction);
-      if (stopRequested()) result.stopped = true;
-      return !result.stopped;
-    };
-    show(0);
-    joined = at_work_[k]->join(submaps, joined, progress);
-    show(1);
-    checkResult(joiner, joined, submaps);
-    reportResult(joiner, joined, reporter);
-    result.wall_s.push_back(timer.elapsed().wall_s);
-  }
-  const StageTimer fuse_timer;
-  if (joined.map.observedCells() == 0) joined.map = fuseEvidence(submaps, joined.frames, map_resolution_);
-  result.wall_s.push_back(fuse_timer.elapsed().wall_s);
+  auto& constraints = result.map.constraints;
+  constraints.insert(constraints.end(), by_hand.begin(), by_hand.end());
+  for (std::size_t k = 0; k < joiners_.size(); ++k)
+    run(*joiners_[k], *at_work_[k], submaps, result, reporter);
+  fuse(submaps, map_resolution_, result);
+  return result;
+}
+
+JoinOutcome Joining::joinAgain(const GridSubmaps& submaps, JoinedMap initial, Reporter& reporter) const {
+  JoinOutcome result{std::move(initial), false, {}};
+  if (!joiners_.empty()) run(*joiners_.back(), *joiners_.back()->incremental(), submaps, result, reporter);
+  fuse(submaps, map_resolution_, result);
   return result;
 }
 

@@ -33,6 +33,9 @@ class Joining {
   JoinOutcome join(const GridSubmaps& submaps, Reporter& reporter,
                    const std::vector<Constraint>& by_hand = {});
 
+  /** Runs the last joiner on other submaps of the same number, from `initial`, and makes the global map. */
+  JoinOutcome joinAgain(const GridSubmaps& submaps, JoinedMap initial, Reporter& reporter) const;
+
   const JoinerChain& joiners() const { return joiners_; }
 
  private:

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <submap_slam/core/errors.h>
 #include <submap_slam/mapping/grid_mapper.h>
+#include <submap_slam/mapping/node_refinement.h>
 #include <submap_slam/output/json_file.h>
 #include <submap_slam/output/text_file.h>
 #include <tbb/global_control.h>
@@ -63,15 +64,31 @@ void logEdits(const Edits& edits, const JoinerChain& joiners, Reporter& reporter
     reporter.warning(edits.file + ": only masks count, [joining] chain names no joiner");
 }
 
+/** Rounds of [node_refinement]: new submaps from better poses of their nodes, joined again. */
+void refineNodesAndJoin(GridSubmaps& submaps, JoinOutcome& outcome, const Joining& joining,
+                        const Configuration& config, SubmapStore& store, Reporter& reporter) {
+  for (int round = 1; round <= config.node_refinement.rounds && !outcome.stopped; ++round) {
+    reporter.progress(fmt::format("refining nodes, round {}", round), 0);
+    RefinedSubmaps refined = refineNodes(submaps, outcome.map, config.mapper, config.node_refinement,
+                                         [&](GridSubmap& submap) { store.takeOver(submap); });
+    reporter.log(fmt::format("nodes refined, round {}: moved by {:.4f} m at the mean, {:.4f} m at most",
+                             round, refined.mean_move, refined.max_move));
+    submaps = std::move(refined.submaps);
+    outcome = joining.joinAgain(submaps, std::move(refined.joined), reporter);
+  }
+}
+
 /** Joins and writes everything but metrics.json. */
 void joinAndWrite(const EditedSubmaps& submaps, Joining& joining, const OutputDirectory& out,
-                  const Configuration& config, Reporter& reporter, RunSummary& summary) {
+                  const Configuration& config, SubmapStore& store, Reporter& reporter, RunSummary& summary) {
   checkEdits(submaps.edits(), submaps.all());
   Metrics& metrics = summary.metrics;
   const StageTimer join_timer;
   reporter.log(fmt::format("{} submaps", submaps.all().size()));
   logEdits(submaps.edits(), joining.joiners(), reporter);
-  const JoinOutcome outcome = joining.join(submaps.shown(), reporter, submaps.byHand());
+  GridSubmaps shown = submaps.shown();
+  JoinOutcome outcome = joining.join(shown, reporter, submaps.byHand());
+  refineNodesAndJoin(shown, outcome, joining, config, store, reporter);
   const JoinedMap& joined = outcome.map;
   requireObservations(joined.map);
   summary.interrupted = outcome.stopped;
@@ -79,8 +96,8 @@ void joinAndWrite(const EditedSubmaps& submaps, Joining& joining, const OutputDi
   addTime(metrics, "join_", join_timer);
 
   const StageTimer write_timer;
-  writeResults(out, submaps.shown(), joined);
-  const auto progress = mappingProgress(submaps.shown(), joined.frames);
+  writeResults(out, shown, joined);
+  const auto progress = mappingProgress(shown, joined.frames);
   addProgressMetrics(metrics, progress);
   writeText(out.file("submaps.csv"), progressCsv(progress));
   writeRunRecord(out, config, reporter.logLines());
@@ -100,7 +117,8 @@ RunSummary mapRawlog(const std::string& log, const std::string& folder, bool ove
   SubmapLogWriter writer = openSubmapFile(out.file(kSubmapFile), log, config, overwrite, reporter);
   const bool goes_on = writer.state().submaps_done > 0;
   const RbpfGridMapper mapper(config.mapper, config.seed);
-  SubmapFollower follower(out.file(kSubmapFile), makeStore(config, out));
+  const auto store = makeStore(config, out);
+  SubmapFollower follower(out.file(kSubmapFile), store);
   EditedSubmaps submaps(edits);
   MapUpdates updates(follower, submaps, joining, out, config.joining.update_growth, goes_on, reporter);
   StretchDone show;
@@ -116,7 +134,7 @@ RunSummary mapRawlog(const std::string& log, const std::string& folder, bool ove
   addLogMetrics(summary.metrics, source.report());
   submaps.add(follower.readNew());
   requireSubmaps(out.file(kSubmapFile));
-  joinAndWrite(submaps, joining, out, config, reporter, summary);
+  joinAndWrite(submaps, joining, out, config, *store, reporter, summary);
   addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
   writeJson(out.file(kMetricsFile), summary.metrics);
   return summary;
@@ -146,12 +164,13 @@ RunSummary joinFile(const std::string& submap_file, const std::string& folder, b
   Joining joining(config.joinerChain(), config.joining.map_resolution);
   requireSubmaps(submap_file);  // before a folder is made for nothing
   const OutputDirectory out(folder, overwrite);
-  const RecoveredSubmaps read = readUsableSubmaps(submap_file, makeStore(config, out));
+  const auto store = makeStore(config, out);
+  const RecoveredSubmaps read = readUsableSubmaps(submap_file, store);
   EditedSubmaps submaps(edits);
   submaps.add(read.submaps);
   summary.damaged = !read.damage.empty();
   if (summary.damaged) reporter.warning(read.damage + "; the submaps before it are joined");
-  joinAndWrite(submaps, joining, out, config, reporter, summary);
+  joinAndWrite(submaps, joining, out, config, *store, reporter, summary);
   addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
   writeJson(out.file(kMetricsFile), summary.metrics);
   return summary;

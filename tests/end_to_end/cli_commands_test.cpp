@@ -126,6 +126,21 @@ TEST_F(CliTest, ResultsAreTheSameBytesForAnyMemory) {
   EXPECT_FALSE(std::filesystem::exists(path("all/submaps.spill")));
 }
 
+TEST_F(CliTest, RefinedNodesReachTheResults) {
+  const Arguments join = quickly({"map", log("room.rawlog"), "-o"});
+  const auto with = [&](const std::string& name, const std::vector<std::string>& extra) {
+    Arguments arguments = join;
+    arguments.insert(arguments.begin() + 3, path(name));
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    succeed(arguments);
+    return contentOf(path(name + "/trajectory.tum"));
+  };
+  const std::string refined = with("refined", {"--set", "node_refinement.rounds=1"});
+  EXPECT_THAT(contentOf(path("refined/log.txt")), HasSubstr("nodes refined, round 1"));
+  EXPECT_NE(refined, with("plain", {}));
+  EXPECT_EQ(refined, with("little", {"--set", "node_refinement.rounds=1", "--memory", "300MB"}));
+}
+
 TEST_F(CliTest, RefusesAnImpossibleMemory) {
   expectRefused(run({"map", log("loop.rawlog"), "-o", path("out"), "--memory", "10MB"}), "memory");
   expectRefused(run({"map", log("loop.rawlog"), "-o", path("out"), "--memory", "much"}), "--memory");
