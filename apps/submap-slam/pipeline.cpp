@@ -113,8 +113,8 @@ RunSummary mapRawlog(const std::string& log, const std::string& folder, bool ove
   const OutputDirectory out = openFolder(folder, overwrite);
 
   SubmapLogWriter writer = openSubmapFile(out.file(kSubmapFile), log, config, overwrite, reporter);
-  const RbpfGridMapper mapper(config.mapper, config.seed);
-  summary.interrupted = !buildSubmaps(source, mapper, writer, reporter);
+  const auto mapper = makeGridMapper(config.mapper, config.seed);
+  summary.interrupted = !buildSubmaps(source, *mapper, writer, reporter);
   addTime(summary.metrics, "build_", timer);
   reportLog(source, reporter);
   summary.damaged = !source.damage().empty();
@@ -136,8 +136,8 @@ RunSummary buildRawlog(const std::string& log, const std::string& submap_file, b
   StretchSource source(log, config.reader, config.stretches);
   if (!overwrite) refuseFinished(submap_file);
   SubmapLogWriter writer = openSubmapFile(submap_file, log, config, overwrite, reporter);
-  const RbpfGridMapper mapper(config.mapper, config.seed);
-  summary.interrupted = !buildSubmaps(source, mapper, writer, reporter);
+  const auto mapper = makeGridMapper(config.mapper, config.seed);
+  summary.interrupted = !buildSubmaps(source, *mapper, writer, reporter);
   reportLog(source, reporter);
   summary.damaged = !source.damage().empty();
   addLogMetrics(summary.metrics, source.report());

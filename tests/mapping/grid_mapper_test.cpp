@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 #include <mrpt/serialization/CSerializable.h>
-#include <submap_slam/mapping/grid_mapper.h>
+#include <submap_slam/mapping/rbpf_grid_mapper.h>
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Cholesky>
@@ -72,8 +72,7 @@ TEST(GridMapper, SubmapsHoldEveryFrameOnce) {
 }
 
 TEST(GridMapper, KeyScansAreAtLeastAsFarApartAsAsked) {
-  const double key_distance = GridMapperParams{}.filter.key_distance,
-               key_angle = GridMapperParams{}.filter.key_angle;
+  const double key_distance = KeyParams{}.distance, key_angle = KeyParams{}.angle;
   for (const auto& submap : roomSubmaps()) {
     std::vector<TPose2D> keys;
     for (const auto& node : submap->nodes)

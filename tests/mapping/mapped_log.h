@@ -23,10 +23,10 @@ inline std::vector<Stretch> stretchesOf(const std::vector<Frame>& frames, const 
 /** All submaps of a log, in order. */
 inline GridSubmaps mapLog(const std::vector<Frame>& frames, const GridMapperParams& params, uint64_t seed = 1,
                           const StretchParams& stretching = {}) {
-  const RbpfGridMapper mapper(params, seed);
+  const auto mapper = makeGridMapper(params, seed);
   GridSubmaps submaps;
   for (const auto& stretch : stretchesOf(frames, stretching))
-    for (const auto& submap : mapper.map(stretch)) submaps.push_back(submap);
+    for (const auto& submap : mapper->map(stretch)) submaps.push_back(submap);
   return submaps;
 }
 

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <mrpt/math/TPose2D.h>
+#include <submap_slam/mapping/correlative_search.h>
+#include <submap_slam/mapping/laser_points.h>
+#include <submap_slam/mapping/match_result.h>
+#include <submap_slam/mapping/probability_grid.h>
+#include <Eigen/Core>
+
+namespace submap_slam {
+
+/** Section [scan_matching]. */
+struct ScanMatchingParams {
+  ProbabilityGridParams grid;
+  double translation_weight = 1.0;  ///< 1/m
+  double rotation_weight = 1.0;     ///< 1/rad
+  int max_iterations = 30;
+  bool correlative_search = false;
+  SearchWindow window{0.2, 0.35, 0.05, 0.02, 100};
+};
+
+/** Pose of a scan in a probability grid, the front end of Huang et al. 2024:
+ *
+ *     min 1/(2n) Σ_b (1 − M(T h_b))² + ½ w_t² ‖t − t̂‖² + ½ w_r² (φ − φ̂)²,
+ *
+ * M the grid's probability, interpolated bicubically (eq. 4), h_b the n endpoints of the scan, (t̂, φ̂) the
+ * pose that odometry predicts. Solved by Ceres from the prediction; with `correlative_search` also from the
+ * best pose of an exhaustive search around it (Olson, ICRA 2009), and the lower cost counts.
+ */
+class GridScanMatcher {
+ public:
+  explicit GridScanMatcher(const ScanMatchingParams& params) : params_(params) {}
+
+  /** `inlier_share` counts beams that end where M > ½. `information` is the Gauss-Newton Hessian of the scan
+   * term over the mean square of 1 − M, as if beams were independent. Where Ceres fails: the prediction.
+   * @param scan not empty */
+  MatchResult match(const ProbabilityGrid& grid, const LaserPoints& scan,
+                    const mrpt::math::TPose2D& prediction) const;
+
+  /** The scan term at a pose. */
+  struct Evaluation {
+    double cost = 0;  ///< 1/(2n) Σ (1 − M)²
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();  ///< Gauss-Newton's
+    std::size_t inliers = 0;
+  };
+  static Evaluation evaluate(const ProbabilityGrid& grid, const LaserPoints& scan,
+                             const mrpt::math::TPose2D& pose);
+
+ private:
+  ScanMatchingParams params_;
+};
+
+}  // namespace submap_slam
