@@ -12,11 +12,11 @@ namespace submap_slam {
 /** Section [scan_matching]. */
 struct ScanMatchingParams {
   ProbabilityGridParams grid;
-  double translation_weight = 1.0;  ///< 1/m
+  double translation_weight = 3.0;  ///< 1/m
   double rotation_weight = 1.0;     ///< 1/rad
   int max_iterations = 30;
   bool correlative_search = false;
-  SearchWindow window{0.2, 0.35, 0.05, 0.02, 100};
+  SearchWindow window{0.2, 0.35, 0.1, 0.02, 60};
 };
 
 /** Pose of a scan in a probability grid, the front end of Huang et al. 2024:
