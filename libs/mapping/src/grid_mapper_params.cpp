@@ -80,8 +80,14 @@ void describe(ParameterTable& table, ScanMatchingParams& p) {
   table.add("rotation_weight", p.rotation_weight, "1/rad", kNonNegative,
             "The same for the turn away from the prediction");
   table.add("max_iterations", p.max_iterations, "", {1, 1000}, "Most iterations of Ceres per match");
-  table.add("correlative_search", p.correlative_search,
-            "Start also from the best pose of a search around the prediction");
+  table.add(
+      "information_share", p.information_share, "", {1e-6, 1},
+      "Share of a match's information that counts for the covariance of the end pose: beams that end in "
+      "the same cells err together");
+  table.add(
+      "correlative_search", p.correlative_search,
+      "Start also from the best pose of a search around the prediction; where odometry is missing that is "
+      "always done");
   describe(table, p.window);
 }
 

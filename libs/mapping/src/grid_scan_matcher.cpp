@@ -115,10 +115,10 @@ class MatchProblem {
 }  // namespace
 
 MatchResult GridScanMatcher::match(const ProbabilityGrid& grid, const LaserPoints& scan,
-                                   const TPose2D& prediction) const {
+                                   const TPose2D& prediction, bool search) const {
   MatchProblem problem(grid, scan, prediction, params_);
   MatchResult result = problem.solveFrom(prediction);
-  if (params_.correlative_search) {
+  if (search) {
     const auto peak = correlativeSearch(grid, scan, prediction, params_.window);
     const MatchResult other = problem.solveFrom(peak.pose);
     if (other.cost < result.cost) result = other;
@@ -126,7 +126,7 @@ MatchResult GridScanMatcher::match(const ProbabilityGrid& grid, const LaserPoint
   const Evaluation at = evaluate(grid, scan, result.pose);
   const auto beams = static_cast<double>(scan.points.size());
   constexpr double kLeastSquare = 1e-3;  // of 1 − M: no beam is explained better than that
-  result.information = at.hessian * (beams / std::max(2 * at.cost, kLeastSquare));
+  result.information = at.hessian * (params_.information_share * beams / std::max(2 * at.cost, kLeastSquare));
   result.inlier_share = static_cast<double>(at.inliers) / beams;
   return result;
 }

@@ -7,19 +7,34 @@ namespace {
 
 using mrpt::math::TPose2D;
 
+/** Robots like to drive along walls. The grid is turned against the first heading, so that walls cross its
+ * rows at all fractions of a cell, and what a cell's width hides averages out (rad). */
+constexpr double kLatticeAngle = 0.41;
+
+/** Where odometry is missing, the prediction is no more than a guess. */
+ScanMatchingParams weakened(ScanMatchingParams params) {
+  constexpr double kShare = 0.1;
+  params.translation_weight *= kShare;
+  params.rotation_weight *= kShare;
+  return params;
+}
+
 /** Path and probability grid of one submap. */
 class ScanMatchingTracker : public SubmapTracker {
  public:
   explicit ScanMatchingTracker(const GridMapperParams& params)
       : keys_(params.filter.keys),
         max_range_(params.evidence.max_range),
+        always_search_(params.scan_matching.correlative_search),
         matcher_(params.scan_matching),
+        guess_matcher_(weakened(params.scan_matching)),
         grid_(params.scan_matching.grid) {}
 
   void step(const LaserPoints& scan, const std::optional<TPose2D>& increment) override {
     PathNode node = predicted(increment);
     if (!scan.points.empty()) {
-      if (!grid_.empty()) node = rematched(node, scan);
+      const GridScanMatcher& matcher = increment ? matcher_ : guess_matcher_;
+      if (!grid_.empty()) node.take(matcher.match(grid_, scan, node.pose, always_search_ || !increment));
       node.key = isKeyPose(path_, node.pose, keys_);
     }
     if (node.key) grid_.insert(scan, node.pose, max_range_);
@@ -30,7 +45,7 @@ class ScanMatchingTracker : public SubmapTracker {
 
   PathNode rematched(const PathNode& node, const LaserPoints& scan) const override {
     PathNode out = node;
-    out.take(matcher_.match(grid_, scan, node.pose));
+    out.take(matcher_.match(grid_, scan, node.pose, false));
     return out;
   }
 
@@ -42,6 +57,7 @@ class ScanMatchingTracker : public SubmapTracker {
   /** Where odometry, or without it the last motion, says that the robot is; the scan has no say yet. */
   PathNode predicted(const std::optional<TPose2D>& increment) const {
     PathNode node;
+    node.pose.phi = kLatticeAngle;
     if (path_.empty()) return node;
     node.pose = path_.back().pose + increment.value_or(lastIncrement(path_));
     node.inlier_share = path_.back().inlier_share;
@@ -50,7 +66,8 @@ class ScanMatchingTracker : public SubmapTracker {
 
   KeyParams keys_;
   double max_range_;  ///< m
-  GridScanMatcher matcher_;
+  bool always_search_;
+  GridScanMatcher matcher_, guess_matcher_;
   ProbabilityGrid grid_;
   LocalPath path_;
 };

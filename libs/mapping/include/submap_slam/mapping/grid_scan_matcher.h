@@ -15,6 +15,7 @@ struct ScanMatchingParams {
   double translation_weight = 3.0;  ///< 1/m
   double rotation_weight = 1.0;     ///< 1/rad
   int max_iterations = 30;
+  double information_share = 0.003;
   bool correlative_search = false;
   SearchWindow window{0.2, 0.35, 0.1, 0.02, 60};
 };
@@ -24,18 +25,19 @@ struct ScanMatchingParams {
  *     min 1/(2n) Σ_b (1 − M(T h_b))² + ½ w_t² ‖t − t̂‖² + ½ w_r² (φ − φ̂)²,
  *
  * M the grid's probability, interpolated bicubically (eq. 4), h_b the n endpoints of the scan, (t̂, φ̂) the
- * pose that odometry predicts. Solved by Ceres from the prediction; with `correlative_search` also from the
- * best pose of an exhaustive search around it (Olson, ICRA 2009), and the lower cost counts.
+ * pose that odometry predicts. Solved by Ceres from the prediction, after a search also from the best pose of
+ * the window around it (Olson, ICRA 2009); the lower cost counts.
  */
 class GridScanMatcher {
  public:
   explicit GridScanMatcher(const ScanMatchingParams& params) : params_(params) {}
 
   /** `inlier_share` counts beams that end where M > ½. `information` is the Gauss-Newton Hessian of the scan
-   * term over the mean square of 1 − M, as if beams were independent. Where Ceres fails: the prediction.
-   * @param scan not empty */
+   * term over the mean square of 1 − M, times `information_share`. Where Ceres fails: the prediction.
+   * @param scan    not empty
+   * @param search  look for another start in the window */
   MatchResult match(const ProbabilityGrid& grid, const LaserPoints& scan,
-                    const mrpt::math::TPose2D& prediction) const;
+                    const mrpt::math::TPose2D& prediction, bool search) const;
 
   /** The scan term at a pose. */
   struct Evaluation {

@@ -18,7 +18,7 @@ class SubmapTracker {
    */
   virtual void step(const LaserPoints& scan, const std::optional<mrpt::math::TPose2D>& increment) = 0;
 
-  /** That of the best hypothesis; its frame is the pose at the first frame. */
+  /** That of the best hypothesis; its frame is the tracker's own. */
   virtual const LocalPath& path() const = 0;
 
   /** A node of the path after its scan, which is not empty, was matched once more, to the map as it is now.
