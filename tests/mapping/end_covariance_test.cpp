@@ -73,7 +73,10 @@ TEST(EndCovariance, OfScanMatchingIsOfTheRightOrder) {
   params.method = "scan_matching";
   for (const auto& world : {roomWorld(), corridorWorld(), loopWorld()}) {
     const Consistency mean = sumOver(world, params).mean();
-    std::cout << world.name << " " << mean.pose << " " << mean.translation << " " << mean.rotation << "\n";
+    EXPECT_GT(mean.pose, 0.3) << world.name;
+    EXPECT_LT(mean.pose, 2) << world.name;
+    EXPECT_LT(mean.translation, 2.5) << world.name;
+    EXPECT_LT(mean.rotation, 2) << world.name;
   }
 }
 

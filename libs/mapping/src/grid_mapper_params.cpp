@@ -84,10 +84,9 @@ void describe(ParameterTable& table, ScanMatchingParams& p) {
       "information_share", p.information_share, "", {1e-6, 1},
       "Share of a match's information that counts for the covariance of the end pose: beams that end in "
       "the same cells err together");
-  table.add(
-      "correlative_search", p.correlative_search,
-      "Start also from the best pose of a search around the prediction; where odometry is missing that is "
-      "always done");
+  table.add("correlative_search", p.correlative_search,
+            "Start also from the best pose of a search around the prediction; always done where odometry is "
+            "missing, with a tenth of the weights");
   describe(table, p.window);
 }
 
