@@ -12,10 +12,10 @@ namespace submap_slam {
 /** Huang et al. 2024, eq. (2), (3). */
 struct ProbabilityGridParams {
   double resolution = 0.1;  ///< m
-  double hit = 0.7;          ///< probability that a cell is occupied if one beam ends in it, > ½
-  double miss = 0.4;         ///< … if one beam passes through it, < ½
-  double min = 0.1;          ///< cells are never surer to be free
-  double max = 0.95;         ///< … or to be occupied
+  double hit = 0.7;         ///< probability that a cell is occupied if one beam ends in it, > ½
+  double miss = 0.4;        ///< … if one beam passes through it, < ½
+  double min = 0.1;         ///< cells are never surer to be free
+  double max = 0.95;        ///< … or to be occupied
 };
 
 /** odds(p) = p / (1 − p), eq. (2). */
