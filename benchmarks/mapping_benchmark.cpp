@@ -1,6 +1,6 @@
 // The steps of the local mapper, on the simulated room: time for each scan.
 #include <benchmark/benchmark.h>
-#include <submap_slam/mapping/grid_mapper.h>
+#include <submap_slam/mapping/rbpf_grid_mapper.h>
 #include <submap_slam/mapping/stretch_splitter.h>
 #include <submap_slam/simulation/simulate.h>
 
@@ -55,7 +55,7 @@ void match(benchmark::State& state) {
   const ScanMatcher matcher({}, SurfelMapParams{}.search_radius);
   std::size_t i = 0;
   for (auto _ : state) {
-    const PosePrior prior{wrong(drive.poses[i]), ParticleFilter::motionInformation({}, {0.1, 0, 0})};
+    const PosePrior prior{wrong(drive.poses[i]), motionInformation({}, {0.1, 0, 0})};
     benchmark::DoNotOptimize(matcher.match(drive.map, drive.scans[i], prior));
     i = (i + 1) % drive.scans.size();
   }

@@ -116,7 +116,7 @@ RunSummary mapRawlog(const std::string& log, const std::string& folder, bool ove
 
   SubmapLogWriter writer = openSubmapFile(out.file(kSubmapFile), log, config, overwrite, reporter);
   const bool goes_on = writer.state().submaps_done > 0;
-  const RbpfGridMapper mapper(config.mapper, config.seed);
+  const auto mapper = makeGridMapper(config.mapper, config.seed);
   const auto store = makeStore(config, out);
   SubmapFollower follower(out.file(kSubmapFile), store);
   EditedSubmaps submaps(edits);
@@ -124,7 +124,7 @@ RunSummary mapRawlog(const std::string& log, const std::string& folder, bool ove
   StretchDone show;
   if (config.joining.incremental)
     show = [&](double fraction_read) { updates.update(writer.state().submaps_done, fraction_read); };
-  summary.interrupted = !buildSubmaps(source, mapper, writer, reporter, show);
+  summary.interrupted = !buildSubmaps(source, *mapper, writer, reporter, show);
   summary.submaps_in_map = updates.submapsInMap();
   addTime(summary.metrics, "build_", timer);
   reportLog(source, reporter);
@@ -147,8 +147,8 @@ RunSummary buildRawlog(const std::string& log, const std::string& submap_file, b
   StretchSource source(log, config.reader, config.stretches);
   if (!overwrite) refuseFinished(submap_file);
   SubmapLogWriter writer = openSubmapFile(submap_file, log, config, overwrite, reporter);
-  const RbpfGridMapper mapper(config.mapper, config.seed);
-  summary.interrupted = !buildSubmaps(source, mapper, writer, reporter);
+  const auto mapper = makeGridMapper(config.mapper, config.seed);
+  summary.interrupted = !buildSubmaps(source, *mapper, writer, reporter);
   reportLog(source, reporter);
   summary.damaged = !source.damage().empty();
   addLogMetrics(summary.metrics, source.report());

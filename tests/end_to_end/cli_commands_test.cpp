@@ -147,6 +147,22 @@ TEST_F(CliTest, RefusesAnImpossibleMemory) {
   EXPECT_FALSE(std::filesystem::exists(path("out")));
 }
 
+TEST_F(CliTest, TheScanMatchingMapperMapsTheRoom) {
+  succeed({"map", log("room.rawlog"), "-o", path("out"), "-q", "--set", "mapper.method=scan_matching"});
+  const auto metrics = nlohmann::json::parse(contentOf(path("out/metrics.json")));
+  EXPECT_EQ(metrics["frames"], 547);
+  EXPECT_GT(metrics["match_score_mean"], 0.8);
+  const auto result = nlohmann::json::parse(
+      succeed({"eval", path("out/trajectory.tum"), "--reference", log("room.truth.tum"), "--json"}).out);
+  EXPECT_LT(result["reference"]["absolute"]["translation_m"]["rmse"], 0.06);
+  EXPECT_THAT(contentOf(path("out/config.ini")), HasSubstr("method = scan_matching"));
+}
+
+TEST_F(CliTest, RefusesAnUnknownMapper) {
+  expectRefused(run({"map", log("room.rawlog"), "-o", path("out"), "--set", "mapper.method=magic"}),
+                "expected one of rbpf, scan_matching");
+}
+
 TEST_F(CliTest, EffectiveConfigurationRepeatsTheRun) {
   succeed(quickly(
       {"map", log("room.rawlog"), "-o", path("first"), "--seed", "7", "--set", "mapper.max_range=6"}));

@@ -35,11 +35,11 @@ struct Consistency {
   }
 };
 
-Consistency sumOver(const World& world) {
+Consistency sumOver(const World& world, const GridMapperParams& params) {
   std::vector<Consistency> of_seed(kSeeds);
   tbb::parallel_for(std::size_t{0}, kSeeds, [&](std::size_t k) {
     const SimulatedLog log = simulateRoute(world, 1e9, OdometryModel{}, 200 + k);
-    for (const auto& submap : mapLog(log.frames, {}))
+    for (const auto& submap : mapLog(log.frames, params))
       if (submap->has_successor) of_seed[k].add(endError(log.truth, *submap), submap->end_pose.cov.asEigen());
   });
   Consistency sum;
@@ -50,7 +50,7 @@ Consistency sumOver(const World& world) {
 TEST(EndCovariance, IsConsistentInEveryWorldAndOverAll) {
   Consistency all;
   for (const auto& world : {roomWorld(), corridorWorld(), loopWorld()}) {
-    const Consistency sum = sumOver(world), mean = sum.mean();
+    const Consistency sum = sumOver(world, {}), mean = sum.mean();
     EXPECT_GT(mean.pose, 0.5) << world.name;
     EXPECT_LT(mean.pose, 1.5) << world.name;
     EXPECT_GT(mean.translation, 0.4) << world.name;
@@ -66,6 +66,18 @@ TEST(EndCovariance, IsConsistentInEveryWorldAndOverAll) {
   EXPECT_LT(mean.translation, 1.5);
   EXPECT_GT(mean.rotation, 0.4);
   EXPECT_LT(mean.rotation, 1.5);
+}
+
+TEST(EndCovariance, OfScanMatchingIsOfTheRightOrder) {
+  GridMapperParams params;
+  params.method = "scan_matching";
+  for (const auto& world : {roomWorld(), corridorWorld(), loopWorld()}) {
+    const Consistency mean = sumOver(world, params).mean();
+    EXPECT_GT(mean.pose, 0.3) << world.name;
+    EXPECT_LT(mean.pose, 2) << world.name;
+    EXPECT_LT(mean.translation, 2.5) << world.name;
+    EXPECT_LT(mean.rotation, 2) << world.name;
+  }
 }
 
 }  // namespace

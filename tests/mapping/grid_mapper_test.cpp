@@ -1,12 +1,10 @@
 #include <gtest/gtest.h>
-#include <mrpt/serialization/CSerializable.h>
-#include <submap_slam/mapping/grid_mapper.h>
+#include <submap_slam/mapping/rbpf_grid_mapper.h>
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "mapped_log.h"
 
@@ -14,16 +12,6 @@ namespace submap_slam {
 namespace {
 
 using mrpt::math::TPose2D;
-
-std::vector<uint8_t> bytesOf(const GridSubmaps& submaps) {
-  std::vector<uint8_t> bytes;
-  for (const auto& submap : submaps) {
-    std::vector<uint8_t> own;
-    mrpt::serialization::ObjectToOctetVector(submap.get(), own);
-    bytes.insert(bytes.end(), own.begin(), own.end());
-  }
-  return bytes;
-}
 
 /** The first metres of the room log, with odometry as bad as an old robot's. */
 const SimulatedLog& roomLog() {
@@ -42,21 +30,6 @@ const GridSubmaps& roomSubmaps() {
   return submaps;
 }
 
-/** Every frame in exactly one submap, linked to the next. */
-void expectConsistent(const GridSubmaps& submaps, std::size_t frames) {
-  uint64_t next = 0;
-  for (std::size_t k = 0; k < submaps.size(); ++k) {
-    const GridSubmap& s = *submaps[k];
-    EXPECT_EQ(s.first_frame, next);
-    EXPECT_EQ(s.end_frame - s.first_frame, s.nodes.size());
-    EXPECT_EQ(s.has_successor, k + 1 < submaps.size());
-    EXPECT_EQ(s.nodes.front().pose, TPose2D()) << "the local map frame is the first node";
-    EXPECT_TRUE(s.nodes.front().isKey());
-    next = s.end_frame;
-  }
-  EXPECT_EQ(next, frames);
-}
-
 TEST(GridMapper, SubmapsHoldEveryFrameOnce) {
   expectConsistent(roomSubmaps(), roomLog().frames.size());
   EXPECT_GE(roomSubmaps().size(), 4u);
@@ -72,8 +45,7 @@ TEST(GridMapper, SubmapsHoldEveryFrameOnce) {
 }
 
 TEST(GridMapper, KeyScansAreAtLeastAsFarApartAsAsked) {
-  const double key_distance = GridMapperParams{}.filter.key_distance,
-               key_angle = GridMapperParams{}.filter.key_angle;
+  const double key_distance = KeyParams{}.distance, key_angle = KeyParams{}.angle;
   for (const auto& submap : roomSubmaps()) {
     std::vector<TPose2D> keys;
     for (const auto& node : submap->nodes)
@@ -262,13 +234,7 @@ TEST(GridMapper, AMatchThatStaysLostClosesTheSubmap) {
   params.closing.lost_below = 0.8;
   params.closing.lost_scans = 3;
   auto frames = std::vector<Frame>(roomLog().frames.begin(), roomLog().frames.begin() + 80);
-  std::mt19937_64 random(1);
-  for (std::size_t i = 40; i < 46; ++i) {  // the robot is carried through a crowd
-    auto scan = mrpt::obs::CObservation2DRangeScan::Create(*frames[i].scans[0]);
-    for (std::size_t b = 0; b < scan->getScanSize(); ++b)
-      scan->setScanRange(b, 0.3f + 0.02f * static_cast<float>(random() % 500));
-    frames[i].scans = {scan};
-  }
+  scrambleScans(frames, 40, 46);
   const auto submaps = mapLog(frames, params);
   expectConsistent(submaps, frames.size());
   ASSERT_GT(submaps.size(), 1u);

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <gtest/gtest.h>
 #include <mrpt/math/wrap2pi.h>
 #include <mrpt/poses/CPose2D.h>
+#include <mrpt/serialization/CSerializable.h>
 #include <submap_slam/mapping/grid_mapper.h>
 #include <submap_slam/mapping/stretch_splitter.h>
 #include <submap_slam/simulation/simulate.h>
 
 #include <cmath>
+#include <random>
 #include <vector>
 
 namespace submap_slam {
@@ -23,11 +26,48 @@ inline std::vector<Stretch> stretchesOf(const std::vector<Frame>& frames, const 
 /** All submaps of a log, in order. */
 inline GridSubmaps mapLog(const std::vector<Frame>& frames, const GridMapperParams& params, uint64_t seed = 1,
                           const StretchParams& stretching = {}) {
-  const RbpfGridMapper mapper(params, seed);
+  const auto mapper = makeGridMapper(params, seed);
   GridSubmaps submaps;
   for (const auto& stretch : stretchesOf(frames, stretching))
-    for (const auto& submap : mapper.map(stretch)) submaps.push_back(submap);
+    for (const auto& submap : mapper->map(stretch)) submaps.push_back(submap);
   return submaps;
+}
+
+/** All submaps as they are written to a file. */
+inline std::vector<uint8_t> bytesOf(const GridSubmaps& submaps) {
+  std::vector<uint8_t> bytes;
+  for (const auto& submap : submaps) {
+    std::vector<uint8_t> own;
+    mrpt::serialization::ObjectToOctetVector(submap.get(), own);
+    bytes.insert(bytes.end(), own.begin(), own.end());
+  }
+  return bytes;
+}
+
+/** Every frame in exactly one submap, linked to the next. */
+inline void expectConsistent(const GridSubmaps& submaps, std::size_t frames) {
+  uint64_t next = 0;
+  for (std::size_t k = 0; k < submaps.size(); ++k) {
+    const GridSubmap& s = *submaps[k];
+    EXPECT_EQ(s.first_frame, next);
+    EXPECT_EQ(s.end_frame - s.first_frame, s.nodes.size());
+    EXPECT_EQ(s.has_successor, k + 1 < submaps.size());
+    EXPECT_EQ(s.nodes.front().pose, mrpt::math::TPose2D()) << "the local map frame is the first node";
+    EXPECT_TRUE(s.nodes.front().isKey());
+    next = s.end_frame;
+  }
+  EXPECT_EQ(next, frames);
+}
+
+/** Noise instead of the scans of frames [begin, end): the robot is carried through a crowd. */
+inline void scrambleScans(std::vector<Frame>& frames, std::size_t begin, std::size_t end) {
+  std::mt19937_64 random(1);
+  for (std::size_t i = begin; i < end; ++i) {
+    auto scan = mrpt::obs::CObservation2DRangeScan::Create(*frames[i].scans[0]);
+    for (std::size_t b = 0; b < scan->getScanSize(); ++b)
+      scan->setScanRange(b, 0.3f + 0.02f * static_cast<float>(random() % 500));
+    frames[i].scans = {scan};
+  }
 }
 
 /** True pose of a frame in the local map frame of a submap. */

@@ -29,7 +29,7 @@ TEST(MotionModel, DeviationsGrowWithTheStep) {
   MotionParams p;
   p.sigma_xy = 0.01, p.sigma_xy_per_m = 0.1;
   p.sigma_phi = 0.02, p.sigma_phi_per_rad = 0.2, p.sigma_phi_per_m = 0.05;
-  const Eigen::Matrix3d information = ParticleFilter::motionInformation(p, {3, 4, -0.5});
+  const Eigen::Matrix3d information = motionInformation(p, {3, 4, -0.5});
   const double xy = 0.01 + 0.1 * 5, phi = 0.02 + 0.2 * 0.5 + 0.05 * 5;
   EXPECT_NEAR(information(0, 0), 1 / (xy * xy), 1e-9);
   EXPECT_NEAR(information(1, 1), 1 / (xy * xy), 1e-9);
@@ -70,8 +70,8 @@ TEST(ParticleFilter, WithoutOdometryTheLastMotionGoesOn) {
 
 TEST(ParticleFilter, KeyScansAreTakenByDistanceAndByTurn) {
   FilterParams params;
-  params.key_distance = 0.25;
-  params.key_angle = 0.15;
+  params.keys.distance = 0.25;
+  params.keys.angle = 0.15;
   const World room = boxRoom();
   ParticleFilter filter(params, 1);
   const std::vector<TPose2D> poses{{0, 0, 0},   {0.1, 0, 0},   {0.2, 0, 0},

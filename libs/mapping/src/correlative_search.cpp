@@ -10,21 +10,15 @@ namespace {
 
 using mrpt::math::TPose2D;
 
-/** Mean over beams of 1 / (1 + r²), r the distance to the nearest line in sigmas. */
-double scoreAt(const SurfelMap& map, const std::vector<Eigen::Vector2d>& turned, double x, double y,
-               double inverse_sigma) {
-  double sum = 0;
-  for (const auto& p : turned) {
-    const double px = x + p.x(), py = y + p.y();
-    const Surfel* surfel = map.nearest(px, py);
-    if (!surfel) continue;
-    const double dx = px - static_cast<double>(surfel->line_x), dy = py - static_cast<double>(surfel->line_y);
-    const double along_normal =
-        dx * static_cast<double>(surfel->normal_x) + dy * static_cast<double>(surfel->normal_y);
-    const double d2 = surfel->kind == Surfel::Kind::kLine ? along_normal * along_normal : dx * dx + dy * dy;
-    sum += 1.0 / (1.0 + d2 * inverse_sigma * inverse_sigma);
-  }
-  return turned.empty() ? 0.0 : sum / static_cast<double>(turned.size());
+/** 1 / (1 + r²), r the distance of a point from the nearest line in sigmas. */
+double lineScore(const SurfelMap& map, double x, double y, double inverse_sigma) {
+  const Surfel* surfel = map.nearest(x, y);
+  if (!surfel) return 0;
+  const double dx = x - static_cast<double>(surfel->line_x), dy = y - static_cast<double>(surfel->line_y);
+  const double along_normal =
+      dx * static_cast<double>(surfel->normal_x) + dy * static_cast<double>(surfel->normal_y);
+  const double d2 = surfel->kind == Surfel::Kind::kLine ? along_normal * along_normal : dx * dx + dy * dy;
+  return 1.0 / (1.0 + d2 * inverse_sigma * inverse_sigma);
 }
 
 /** Endpoints, thinned evenly to `max_beams`, in the axes of the map. */
@@ -41,61 +35,91 @@ std::vector<Eigen::Vector2d> turnedBy(const LaserPoints& scan, double phi, int m
 }
 
 /** Scores on the lattice of the search window, φ slowest, x fastest. */
-struct Volume {
-  int n_xy, n_phi;  ///< half widths in steps
-  std::vector<double> score;
+class Volume {
+ public:
+  /** @param point_score score of a beam that ends at (x, y) */
+  template <class PointScore>
+  Volume(const LaserPoints& scan, const TPose2D& centre, const SearchWindow& window, PointScore point_score)
+      : window_(window),
+        centre_(centre),
+        n_xy_(static_cast<int>(std::round(window.window_xy / window.step_xy))),
+        n_phi_(static_cast<int>(std::round(window.window_phi / window.step_phi))) {
+    const auto side = static_cast<std::size_t>(2 * n_xy_ + 1);
+    scores_.reserve(side * side * static_cast<std::size_t>(2 * n_phi_ + 1));
+    for (int kp = -n_phi_; kp <= n_phi_; ++kp) {
+      const auto turned = turnedBy(scan, centre.phi + kp * window.step_phi, window.max_beams);
+      for (int ky = -n_xy_; ky <= n_xy_; ++ky)
+        for (int kx = -n_xy_; kx <= n_xy_; ++kx) {
+          const TPose2D pose = poseAt(kx, ky, kp);
+          double sum = 0;
+          for (const auto& p : turned) sum += point_score(pose.x + p.x(), pose.y + p.y());
+          scores_.push_back(turned.empty() ? 0.0 : sum / static_cast<double>(turned.size()));
+        }
+    }
+  }
+
+  double best() const { return *std::max_element(scores_.begin(), scores_.end()); }
+
+  /** Local maxima with at least that score, in the order of the lattice. */
+  std::vector<CorrelativePeak> peaks(double least) const {
+    std::vector<CorrelativePeak> out;
+    for (int kp = -n_phi_; kp <= n_phi_; ++kp)
+      for (int ky = -n_xy_; ky <= n_xy_; ++ky)
+        for (int kx = -n_xy_; kx <= n_xy_; ++kx) {
+          const double score = scores_[index(kx, ky, kp)];
+          if (score >= least && isPeak(kx, ky, kp)) out.push_back({poseAt(kx, ky, kp), score});
+        }
+    return out;
+  }
+
+ private:
+  TPose2D poseAt(int kx, int ky, int kp) const {
+    return {centre_.x + kx * window_.step_xy, centre_.y + ky * window_.step_xy,
+            mrpt::math::wrapToPi(centre_.phi + kp * window_.step_phi)};
+  }
 
   std::size_t index(int kx, int ky, int kp) const {
-    const int side = 2 * n_xy + 1;
-    return static_cast<std::size_t>(((kp + n_phi) * side + ky + n_xy) * side + kx + n_xy);
+    const int side = 2 * n_xy_ + 1;
+    return static_cast<std::size_t>(((kp + n_phi_) * side + ky + n_xy_) * side + kx + n_xy_);
   }
 
   bool isPeak(int kx, int ky, int kp) const {
-    const double here = score[index(kx, ky, kp)];
-    for (int p = std::max(kp - 1, -n_phi); p <= std::min(kp + 1, n_phi); ++p)
-      for (int y = std::max(ky - 1, -n_xy); y <= std::min(ky + 1, n_xy); ++y)
-        for (int x = std::max(kx - 1, -n_xy); x <= std::min(kx + 1, n_xy); ++x)
-          if (score[index(x, y, p)] > here) return false;
+    const double here = scores_[index(kx, ky, kp)];
+    for (int p = std::max(kp - 1, -n_phi_); p <= std::min(kp + 1, n_phi_); ++p)
+      for (int y = std::max(ky - 1, -n_xy_); y <= std::min(ky + 1, n_xy_); ++y)
+        for (int x = std::max(kx - 1, -n_xy_); x <= std::min(kx + 1, n_xy_); ++x)
+          if (scores_[index(x, y, p)] > here) return false;
     return true;
   }
+
+  const SearchWindow& window_;
+  TPose2D centre_;
+  int n_xy_, n_phi_;  ///< half widths in steps
+  std::vector<double> scores_;
 };
 
 }  // namespace
 
 std::vector<CorrelativePeak> correlativeSearch(const SurfelMap& map, const LaserPoints& scan,
                                                const TPose2D& centre, const CorrelativeSearchParams& params) {
-  Volume volume{static_cast<int>(std::round(params.window_xy / params.step_xy)),
-                static_cast<int>(std::round(params.window_phi / params.step_phi)),
-                {}};
-  const auto side = static_cast<std::size_t>(2 * volume.n_xy + 1);
-  volume.score.resize(side * side * static_cast<std::size_t>(2 * volume.n_phi + 1));
-  const auto poseAt = [&](int kx, int ky, int kp) {
-    return TPose2D(centre.x + kx * params.step_xy, centre.y + ky * params.step_xy,
-                   mrpt::math::wrapToPi(centre.phi + kp * params.step_phi));
-  };
-  for (int kp = -volume.n_phi; kp <= volume.n_phi; ++kp) {
-    const auto turned = turnedBy(scan, centre.phi + kp * params.step_phi, params.max_beams);
-    for (int ky = -volume.n_xy; ky <= volume.n_xy; ++ky)
-      for (int kx = -volume.n_xy; kx <= volume.n_xy; ++kx) {
-        const TPose2D pose = poseAt(kx, ky, kp);
-        volume.score[volume.index(kx, ky, kp)] = scoreAt(map, turned, pose.x, pose.y, 1.0 / params.sigma);
-      }
-  }
-
-  const double best = *std::max_element(volume.score.begin(), volume.score.end());
-  std::vector<CorrelativePeak> peaks;
-  for (int kp = -volume.n_phi; kp <= volume.n_phi; ++kp)
-    for (int ky = -volume.n_xy; ky <= volume.n_xy; ++ky)
-      for (int kx = -volume.n_xy; kx <= volume.n_xy; ++kx) {
-        const double score = volume.score[volume.index(kx, ky, kp)];
-        if (score >= params.peak_ratio * best && volume.isPeak(kx, ky, kp))
-          peaks.push_back({poseAt(kx, ky, kp), score});
-      }
+  const Volume volume(scan, centre, params, [&, inverse_sigma = 1.0 / params.sigma](double x, double y) {
+    return lineScore(map, x, y, inverse_sigma);
+  });
+  std::vector<CorrelativePeak> peaks = volume.peaks(params.peak_ratio * volume.best());
   std::stable_sort(peaks.begin(), peaks.end(),
                    [](const auto& a, const auto& b) { return a.score > b.score; });
   if (peaks.size() > static_cast<std::size_t>(params.max_peaks))
     peaks.resize(static_cast<std::size_t>(params.max_peaks));
   return peaks;
+}
+
+CorrelativePeak correlativeSearch(const ProbabilityGrid& grid, const LaserPoints& scan, const TPose2D& centre,
+                                  const SearchWindow& window) {
+  const Volume volume(scan, centre, window, [&](double x, double y) {
+    return grid.probability(static_cast<int>(std::lround(grid.columnOf(x))),
+                            static_cast<int>(std::lround(grid.rowOf(y))));
+  });
+  return volume.peaks(volume.best()).front();
 }
 
 }  // namespace submap_slam

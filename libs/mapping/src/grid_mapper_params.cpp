@@ -23,13 +23,17 @@ void describe(ParameterTable& table, MatcherParams& p) {
             "Most Levenberg-Marquardt iterations per scan");
 }
 
-void describe(ParameterTable& table, CorrelativeSearchParams& p) {
+void describe(ParameterTable& table, SearchWindow& p) {
   table.add("window_xy", p.window_xy, "m", {0.01, 5}, "Half width of the search window");
   table.add("window_phi", p.window_phi, "rad", {0.01, 3.2}, "Half width of the search window in heading");
   table.add("step_xy", p.step_xy, "m", {0.005, 1}, "Step of the search");
   table.add("step_phi", p.step_phi, "rad", {0.001, 1}, "Step of the search in heading");
   table.add("max_beams", p.max_beams, "", {1, 1e6},
             "Most beams that are scored, evenly spread over the scan");
+}
+
+void describe(ParameterTable& table, CorrelativeSearchParams& p) {
+  describe(table, static_cast<SearchWindow&>(p));
   table.add("sigma", p.sigma, "m", kPositive,
             "Softness of the score: standard deviation of a beam's distance");
   table.add("peak_ratio", p.peak_ratio, "", kShare, "Peaks below this share of the best score are dropped");
@@ -55,6 +59,35 @@ void describeParticles(ParameterTable& table, FilterParams& p) {
   table.add("min_weight", p.min_weight, "", kShare,
             "Hypotheses of the adaptive filter below this weight are dropped");
   table.add("decided_weight", p.decided_weight, "", kShare, "A hypothesis above this weight has won");
+}
+
+void describe(ParameterTable& table, ProbabilityGridParams& p) {
+  constexpr Range kFree{0.001, 0.499}, kOccupied{0.501, 0.999};
+  table.add("resolution", p.resolution, "m", {0.005, 1}, "Cell size of the probability grid");
+  table.add("hit_probability", p.hit, "", kOccupied,
+            "A scan with a beam that ends in a cell multiplies its odds by those of this probability");
+  table.add("miss_probability", p.miss, "", kFree, "The same if beams only pass through the cell");
+  table.add("min_probability", p.min, "", kFree, "Cells are never surer to be free");
+  table.add("max_probability", p.max, "", kOccupied, "Cells are never surer to be occupied");
+}
+
+void describe(ParameterTable& table, ScanMatchingParams& p) {
+  describe(table, p.grid);
+  table.add(
+      "translation_weight", p.translation_weight, "1/m", kNonNegative,
+      "Weight of the distance from odometry's prediction against the root mean square of 1 - probability "
+      "at the beams' ends");
+  table.add("rotation_weight", p.rotation_weight, "1/rad", kNonNegative,
+            "The same for the turn away from the prediction");
+  table.add("max_iterations", p.max_iterations, "", {1, 1000}, "Most iterations of Ceres per match");
+  table.add(
+      "information_share", p.information_share, "", {1e-6, 1},
+      "Share of a match's information that counts for the covariance of the end pose: beams that end in "
+      "the same cells err together");
+  table.add("correlative_search", p.correlative_search,
+            "Start also from the best pose of a search around the prediction; always done where odometry is "
+            "missing, with a tenth of the weights");
+  describe(table, p.window);
 }
 
 void describe(ParameterTable& table, ClosingParams& p) {
@@ -90,18 +123,24 @@ void describe(ParameterTable& table, EvidenceParams& p) {
 
 void describe(ParameterTable& table, GridMapperParams& p) {
   table.section("mapper", "Local mapper: from frames to grid submaps");
+  table.add("method", p.method,
+            "Particle filter over scans matched to surfels, or one hypothesis matched to a probability grid "
+            "(Huang et al. 2024)",
+            {"rbpf", "scan_matching"});
   table.add("max_range", p.max_range, "m", kNonNegative,
             "Beams beyond this are not used; 0: all that the scanner gives");
-  table.add("key_distance", p.filter.key_distance, "m", kPositive,
+  table.add("key_distance", p.filter.keys.distance, "m", kPositive,
             "A scan is inserted into the map after this distance");
-  table.add("key_angle", p.filter.key_angle, "rad", kPositive, "… or after this turn");
+  table.add("key_angle", p.filter.keys.angle, "rad", kPositive, "… or after this turn");
   table.add("refine", p.refine, "Match every scan once more to the finished submap");
-  table.add("refine_sigma_xy", p.refine_sigma_xy, "m", kPositive, "How far refinement may move a pose");
-  table.add("refine_sigma_phi", p.refine_sigma_phi, "rad", kPositive, "How far refinement may turn a pose");
-  table.section("matcher", "Scan matcher: robust point-to-line distances to surfels");
+  table.add("refine_sigma_xy", p.refine_sigma_xy, "m", kPositive,
+            "How far refinement by rbpf may move a pose");
+  table.add("refine_sigma_phi", p.refine_sigma_phi, "rad", kPositive,
+            "How far refinement by rbpf may turn a pose");
+  table.section("matcher", "Scan matcher of rbpf: robust point-to-line distances to surfels");
   describe(table, p.filter.map);
   describe(table, p.filter.matcher);
-  table.section("rescue", "Correlative search for scans that the matcher cannot explain");
+  table.section("rescue", "Correlative search of rbpf for scans that the matcher cannot explain");
   table.add("below", p.filter.rescue_below, "", kShare,
             "Search if fewer beams are inliers than this share of what is usual over the last scans");
   table.add("slip_beyond", p.filter.slip_beyond, "", kPositive,
@@ -117,7 +156,9 @@ void describe(ParameterTable& table, GridMapperParams& p) {
   describe(table, p.filter.motion);
   table.section("particles", "Particle filter");
   describeParticles(table, p.filter);
-  table.section("closing", "Decision rules of the filter that close a submap before its stretch ends");
+  table.section("scan_matching", "Local mapper scan_matching: probability grid and scan matching by Ceres");
+  describe(table, p.scan_matching);
+  table.section("closing", "Decision rules that close a submap before its stretch ends");
   describe(table, p.closing);
   table.section("drift", "Covariance of a submap's end pose");
   describe(table, p.drift);

@@ -47,27 +47,11 @@ double usualInlierShare(const Particle& particle) {
   return sum / static_cast<double>(n);
 }
 
-/** The last motion again; nothing if there is none yet. */
-TPose2D lastIncrement(const Particle& particle) {
-  const auto n = particle.path.size();
-  if (n < 2) return {};
-  return particle.path[n - 1].pose - particle.path[n - 2].pose;
-}
-
 }  // namespace
 
 ParticleFilter::ParticleFilter(const FilterParams& params, uint64_t seed)
     : params_(params), matcher_(params.matcher, params.map.search_radius), random_(seed) {
   particles_.push_back({SurfelMap(params_.map), {}, 0.0});
-}
-
-Eigen::Matrix3d ParticleFilter::motionInformation(const MotionParams& p, const TPose2D& increment) {
-  const double distance = std::hypot(increment.x, increment.y),
-               turn = std::abs(mrpt::math::wrapToPi(increment.phi));
-  const double sigma_xy = p.sigma_xy + p.sigma_xy_per_m * distance;
-  const double sigma_phi = p.sigma_phi + p.sigma_phi_per_rad * turn + p.sigma_phi_per_m * distance;
-  return Eigen::Vector3d(1 / (sigma_xy * sigma_xy), 1 / (sigma_xy * sigma_xy), 1 / (sigma_phi * sigma_phi))
-      .asDiagonal();
 }
 
 void ParticleFilter::step(const LaserPoints& scan, const std::optional<TPose2D>& increment) {
@@ -81,7 +65,7 @@ void ParticleFilter::step(const LaserPoints& scan, const std::optional<TPose2D>&
       next.push_back(std::move(particle));
       continue;
     }
-    const TPose2D motion = increment.value_or(lastIncrement(particle));
+    const TPose2D motion = increment.value_or(lastIncrement(particle.path));
     const PosePrior prior{compose(particle.path.back().pose, motion),
                           motionInformation(params_.motion, motion)};
     const auto proposals = propose(particle, scan, prior);
@@ -118,7 +102,7 @@ std::vector<ParticleFilter::Proposal> ParticleFilter::propose(const Particle& pa
 }
 
 bool ParticleFilter::isSurprising(const Particle& particle, const PosePrior& prior) const {
-  const TPose2D motion = lastIncrement(particle);
+  const TPose2D motion = lastIncrement(particle.path);
   const PosePrior expected{compose(particle.path.back().pose, motion),
                            motionInformation(params_.motion, motion)};
   return particle.path.size() > 1 && mahalanobis(prior.mean, expected) > params_.slip_beyond;
@@ -168,7 +152,7 @@ std::vector<ParticleFilter::Proposal> ParticleFilter::alternatives(const Particl
 
 void ParticleFilter::addSlips(std::vector<Proposal>& modes, const Particle& particle, const LaserPoints& scan,
                               const PosePrior& prior, bool search) const {
-  const TPose2D &last = particle.path.back().pose, motion = lastIncrement(particle);
+  const TPose2D &last = particle.path.back().pose, motion = lastIncrement(particle.path);
   const Eigen::Matrix3d information = motionInformation(params_.motion, motion) * params_.slip_information;
   // Wheels that slip go on slipping at no further cost.
   const bool steady = odometry_since_ + 1 < odometry_.size() && !isSurprising(particle, prior);
@@ -216,20 +200,9 @@ ParticleFilter::Proposal ParticleFilter::sampled(const Proposal& around, const P
 
 void ParticleFilter::extend(Particle& particle, const LaserPoints& scan, const Proposal& proposal) {
   PathNode node;
-  node.pose = proposal.match.pose;
-  node.information = proposal.match.information;
-  node.inlier_share = static_cast<float>(proposal.match.inlier_share);
+  node.take(proposal.match);
   node.by_odometry = proposal.by_odometry;
-  const auto last_key =
-      std::find_if(particle.path.rbegin(), particle.path.rend(), [](const auto& n) { return n.key; });
-  if (last_key == particle.path.rend()) {
-    node.key = true;
-  } else {
-    const TPose2D moved = node.pose - last_key->pose;
-    node.key = std::hypot(moved.x, moved.y) >= params_.key_distance ||
-               std::abs(mrpt::math::wrapToPi(moved.phi)) >= params_.key_angle;
-  }
-  if (scan.points.empty()) node.key = false;
+  node.key = !scan.points.empty() && isKeyPose(particle.path, node.pose, params_.keys);
   if (node.key) particle.map.insert(scan, node.pose);
   particle.path.push_back(node);
   particle.log_weight += proposal.log_weight;

@@ -4,9 +4,13 @@
 #include <submap_slam/core/parameters.h>
 #include <submap_slam/mapping/drift_covariance.h>
 #include <submap_slam/mapping/evidence_renderer.h>
+#include <submap_slam/mapping/grid_scan_matcher.h>
 #include <submap_slam/mapping/particle_filter.h>
+#include <submap_slam/mapping/submap_tracker.h>
 
 #include <cstdint>
+#include <memory>
+#include <string>
 #include <vector>
 
 namespace submap_slam {
@@ -21,7 +25,9 @@ struct ClosingParams {
 };
 
 struct GridMapperParams {
+  std::string method = "rbpf";  ///< or "scan_matching"
   FilterParams filter;
+  ScanMatchingParams scan_matching;
   EvidenceParams evidence;
   ClosingParams closing;
   DriftParams drift;
@@ -31,25 +37,34 @@ struct GridMapperParams {
   bool refine = true;
 };
 
-/** Adds the sections [mapper], [matcher], [rescue], [motion], [particles], [closing], [drift] and [evidence].
- */
+/** Adds the sections [mapper], [matcher], [rescue], [motion], [particles], [scan_matching], [closing],
+ * [drift] and [evidence]. */
 void describe(ParameterTable& table, GridMapperParams& params);
 
-/** Builds grid submaps from laser scans and odometry with an adaptive Rao-Blackwellized particle filter.
+/** Builds grid submaps from laser scans and odometry: what all local mappers do around their own way to
+ * follow the robot.
  *
  * The warm-up frames of the stretch only prepare the matching map. When the stretch ends, every own frame and
  * the first frame of the next stretch are matched once more to the finished map; the evidence is rendered
- * from those poses. The random stream is seeded by (seed, index of the first frame).
+ * from those poses.
  */
-class RbpfGridMapper : public LocalMapper {
+class GridMapper : public LocalMapper {
  public:
-  RbpfGridMapper(const GridMapperParams& params, uint64_t seed);
+  std::vector<GridSubmap::Ptr> map(const Stretch& stretch) const final;
 
-  std::vector<GridSubmap::Ptr> map(const Stretch& stretch) const override;
+ protected:
+  explicit GridMapper(const GridMapperParams& params) : params_(params) {}
+
+  const GridMapperParams& params() const { return params_; }
 
  private:
+  /** @param first_frame index in the log of the submap's first own frame */
+  virtual std::unique_ptr<SubmapTracker> track(uint64_t first_frame) const = 0;
+
   GridMapperParams params_;
-  uint64_t seed_;
 };
+
+/** The mapper that [mapper] method names. Throws ConfigError if its parameters contradict each other. */
+std::unique_ptr<LocalMapper> makeGridMapper(const GridMapperParams& params, uint64_t seed);
 
 }  // namespace submap_slam

@@ -3,6 +3,7 @@
 #include <mrpt/math/TPose2D.h>
 #include <submap_slam/mapping/correlative_search.h>
 #include <submap_slam/mapping/laser_points.h>
+#include <submap_slam/mapping/local_path.h>
 #include <submap_slam/mapping/scan_matcher.h>
 #include <submap_slam/mapping/surfel_map.h>
 
@@ -12,15 +13,6 @@
 #include <vector>
 
 namespace submap_slam {
-
-/** Standard deviations of odometry over one step; wide on purpose: the matcher decides. */
-struct MotionParams {
-  double sigma_xy = 0.01;           ///< m
-  double sigma_xy_per_m = 0.10;     ///< m per m
-  double sigma_phi = 0.02;          ///< rad
-  double sigma_phi_per_rad = 0.10;  ///< rad per rad
-  double sigma_phi_per_m = 0.05;    ///< rad per m
-};
 
 struct FilterParams {
   SurfelMapParams map;
@@ -32,9 +24,8 @@ struct FilterParams {
   double slip_cost = 10.0;         ///< negative log probability of a slip while odometry goes on evenly
   double surprise_cost = 2.0;      ///< the same where odometry says something quite different from before
   double slip_information = 0.02;  ///< share of the odometry's information that is left in a rescue
-  double key_distance = 0.15;      ///< m
-  double key_angle = 0.1;          ///< rad
-  int fixed_particles = 0;         ///< 0: adaptive
+  KeyParams keys;
+  int fixed_particles = 0;  ///< 0: adaptive
   int max_particles = 12;
   double resample_below = 0.5;    ///< share of N_eff
   double likelihood_power = 0.1;  ///< tempering
@@ -42,19 +33,10 @@ struct FilterParams {
   double decided_weight = 0.98;
 };
 
-/** What a hypothesis says of one frame. */
-struct PathNode {
-  mrpt::math::TPose2D pose;                               ///< T_s_robot
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of the scan in the map, (x, y, φ)
-  float inlier_share = 1;
-  bool key = false;         ///< inserted into the map
-  bool by_odometry = true;  ///< agrees with odometry since the last such node
-};
-
 /** One hypothesis: a path and the map that follows from it. */
 struct Particle {
   SurfelMap map;
-  std::vector<PathNode> path;  ///< one node for each frame so far
+  LocalPath path;
   double log_weight = 0;
 };
 
@@ -81,9 +63,6 @@ class ParticleFilter {
 
   uint32_t rescues() const { return rescues_; }
   uint32_t resamplings() const { return resamplings_; }
-
-  /** Information of the odometry prior over one step. */
-  static Eigen::Matrix3d motionInformation(const MotionParams& params, const mrpt::math::TPose2D& increment);
 
  private:
   struct Proposal {

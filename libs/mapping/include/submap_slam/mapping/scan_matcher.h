@@ -2,6 +2,7 @@
 
 #include <mrpt/math/TPose2D.h>
 #include <submap_slam/mapping/laser_points.h>
+#include <submap_slam/mapping/match_result.h>
 #include <submap_slam/mapping/surfel_map.h>
 #include <Eigen/Core>
 
@@ -17,15 +18,6 @@ struct MatcherParams {
 struct PosePrior {
   mrpt::math::TPose2D mean;                               ///< T_s_robot
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of (x, y, φ)
-};
-
-struct MatchResult {
-  mrpt::math::TPose2D pose;  ///< T_s_robot
-  Eigen::Matrix3d information =
-      Eigen::Matrix3d::Zero();  ///< Gauss-Newton Hessian of the scan term alone at `pose`
-  double cost = 0;              ///< negative log posterior up to a constant: scan term + prior term
-  double inlier_share = 0;      ///< share of all beams within 2 sigma of their surfel's line
-  int iterations = 0;
 };
 
 /** Maximum-a-posteriori pose of a scan in a surfel map: Levenberg-Marquardt on robust point-to-line distances
