@@ -39,15 +39,15 @@ struct Frame {
   /** T_odom_robot, interpolated to the stamp (m, rad); empty where the log has no odometry. */
   std::optional<mrpt::math::TPose2D> odometry;
 
-  /** Covariance of the motion since the frame before, seen from the robot there (m², m·rad, rad²), where
-   * the reader derives odometry from a model of the vehicle; empty: the mapper's own motion model counts. */
-  std::optional<mrpt::math::CMatrixDouble33> motion_covariance;
-
   /** Scans with this stamp; `sensorPose` is the pose of each scanner on the robot. */
   std::vector<mrpt::obs::CObservation2DRangeScan::Ptr> scans;
 
   /** Landmarks seen with this stamp. A frame has a scan, or landmarks, or both. */
-  std::vector<LandmarkScan> landmark_scans;
+  std::vector<LandmarkScan> landmark_scans{};
+
+  /** Covariance of the motion since the frame before, seen from the robot there (m², m·rad, rad²), where
+   * the reader derives odometry from a model of the vehicle; empty: the mapper's own motion model counts. */
+  std::optional<mrpt::math::CMatrixDouble33> motion_covariance{};
 };
 
 }  // namespace submap_slam
