@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace submap_slam {
@@ -27,6 +28,7 @@ struct LandmarkScan {
   double sigma_range = 0;              ///< m; 0: the log does not say
   double sigma_bearing = 0;            ///< rad; 0: the log does not say
   std::vector<LandmarkMeasurement> measurements;
+  std::string sensor_label;
 };
 
 /** One instant of the log: what the sensors saw then and where odometry says the robot was. */
