@@ -1,11 +1,12 @@
 #include <fmt/format.h>
+#include <submap_slam/pipeline/configuration.h>
+#include <submap_slam/pipeline/pipeline.h>
 
 #include <memory>
 
 #include "commands.h"
-#include "configuration.h"
-#include "pipeline.h"
 #include "summary.h"
+#include "terminal_reporter.h"
 
 namespace submap_slam {
 namespace {
@@ -21,7 +22,7 @@ int runMap(MapOptions& options) {
   const auto config = loadConfiguration(options.run.configuration);
   const Edits edits = options.edits_file.empty() ? Edits{} : readEdits(options.edits_file);
   const auto limit = limitThreads(options.run.threads);
-  Reporter reporter(options.run.quiet);
+  TerminalReporter reporter(options.run.quiet);
 
   const RunSummary summary = mapRawlog(log, options.folder, options.run.overwrite, *config, reporter, edits);
   reporter.note(mapSummary(summary, options.folder));

@@ -2,13 +2,12 @@
 #pragma once
 
 #include <submap_slam/core/joined_map.h>
+#include <submap_slam/pipeline/configuration.h>
+#include <submap_slam/pipeline/reporter.h>
 
 #include <memory>
 #include <string>
 #include <vector>
-
-#include "configuration.h"
-#include "reporter.h"
 
 namespace submap_slam {
 

@@ -1,4 +1,4 @@
-#include "stage_timer.h"
+#include <submap_slam/pipeline/stage_timer.h>
 
 #include <sys/resource.h>
 

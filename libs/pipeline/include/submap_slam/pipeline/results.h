@@ -2,11 +2,10 @@
 
 #include <submap_slam/core/joined_map.h>
 #include <submap_slam/output/output_directory.h>
+#include <submap_slam/pipeline/configuration.h>
 
 #include <string>
 #include <vector>
-
-#include "configuration.h"
 
 namespace submap_slam {
 

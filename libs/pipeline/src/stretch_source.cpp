@@ -1,4 +1,4 @@
-#include "stretch_source.h"
+#include <submap_slam/pipeline/stretch_source.h>
 
 #include <submap_slam/core/errors.h>
 

@@ -2,13 +2,12 @@
 #pragma once
 
 #include <submap_slam/output/output_directory.h>
+#include <submap_slam/pipeline/configuration.h>
+#include <submap_slam/pipeline/reporter.h>
 #include <submap_slam/rawlog/submap_log.h>
 
 #include <memory>
 #include <string>
-
-#include "configuration.h"
-#include "reporter.h"
 
 namespace submap_slam {
 

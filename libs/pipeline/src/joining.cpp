@@ -1,14 +1,12 @@
-#include "joining.h"
+#include <submap_slam/pipeline/joining.h>
 
 #include <fmt/format.h>
 #include <submap_slam/core/errors.h>
+#include <submap_slam/pipeline/stage_timer.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
-
-#include "stage_timer.h"
-#include "stop_signal.h"
 
 namespace submap_slam {
 namespace {
@@ -47,7 +45,7 @@ void run(const SubmapJoiner& joiner, IncrementalJoin& at_work, const GridSubmaps
   const auto show = [&](double fraction) { reporter.progress("joining with " + joiner.name(), fraction); };
   const auto progress = [&](double fraction, const std::string&) {
     show(fraction);
-    if (stopRequested()) result.stopped = true;
+    if (reporter.stopRequested()) result.stopped = true;
     return !result.stopped;
   };
   show(0);

@@ -1,17 +1,16 @@
-#include "configuration.h"
+#include <submap_slam/pipeline/configuration.h>
 
 #include <fmt/format.h>
 #include <submap_slam/core/errors.h>
 #include <submap_slam/core/ini_file.h>
 #include <submap_slam/core/plugins.h>
 #include <submap_slam/core/version.h>
+#include <submap_slam/pipeline/installation.h>
 #include <submap_slam/rawlog/resume_state.h>
 
 #include <algorithm>
 #include <iterator>
 #include <sstream>
-
-#include "installation.h"
 
 namespace submap_slam {
 namespace {

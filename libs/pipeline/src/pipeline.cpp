@@ -1,4 +1,4 @@
-#include "pipeline.h"
+#include <submap_slam/pipeline/pipeline.h>
 
 #include <fmt/format.h>
 #include <submap_slam/core/errors.h>
@@ -6,20 +6,18 @@
 #include <submap_slam/mapping/node_refinement.h>
 #include <submap_slam/output/json_file.h>
 #include <submap_slam/output/text_file.h>
+#include <submap_slam/pipeline/edited_submaps.h>
+#include <submap_slam/pipeline/joining.h>
+#include <submap_slam/pipeline/map_updates.h>
+#include <submap_slam/pipeline/metrics.h>
+#include <submap_slam/pipeline/results.h>
+#include <submap_slam/pipeline/run_files.h>
+#include <submap_slam/pipeline/stage_timer.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_pipeline.h>
 
 #include <algorithm>
 #include <memory>
-
-#include "edited_submaps.h"
-#include "joining.h"
-#include "map_updates.h"
-#include "metrics.h"
-#include "results.h"
-#include "run_files.h"
-#include "stage_timer.h"
-#include "stop_signal.h"
 
 namespace submap_slam {
 namespace {
@@ -184,7 +182,7 @@ bool buildSubmaps(StretchSource& source, const LocalMapper& mapper, SubmapLogWri
   std::size_t frames_built = 0;
 
   const auto read = [&](tbb::flow_control& flow) -> JobPtr {
-    while (!stopRequested()) {
+    while (!reporter.stopRequested()) {
       auto stretch = source.next();
       read_all = !stretch;
       if (read_all) break;
@@ -195,7 +193,7 @@ bool buildSubmaps(StretchSource& source, const LocalMapper& mapper, SubmapLogWri
     return nullptr;
   };
   const auto build = [&](const JobPtr& job) {
-    if (stopRequested()) return job;
+    if (reporter.stopRequested()) return job;
     job->submaps = mapper.map(job->stretch);
     job->built = true;
     return job;

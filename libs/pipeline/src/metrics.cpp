@@ -1,4 +1,4 @@
-#include "metrics.h"
+#include <submap_slam/pipeline/metrics.h>
 
 #include <fmt/format.h>
 #include <submap_slam/core/version.h>

@@ -1,8 +1,11 @@
-#include "map_updates.h"
+#include <submap_slam/pipeline/map_updates.h>
 
 #include <fmt/format.h>
 #include <submap_slam/output/replace_file.h>
 #include <submap_slam/output/text_file.h>
+#include <submap_slam/pipeline/metrics.h>
+#include <submap_slam/pipeline/results.h>
+#include <submap_slam/pipeline/stage_timer.h>
 #include <tbb/task_arena.h>
 
 #include <cmath>
@@ -11,12 +14,18 @@
 #include <iterator>
 #include <numeric>
 
-#include "metrics.h"
-#include "results.h"
-#include "stage_timer.h"
-
 namespace submap_slam {
 namespace {
+
+/** What joiners say of a part of the map is not for the log of the run. */
+class Unheard : public Reporter {
+ public:
+  explicit Unheard(const Reporter& of_run) : of_run_(of_run) {}
+  bool stopRequested() const override { return of_run_.stopRequested(); }
+
+ private:
+  const Reporter& of_run_;
+};
 
 /** Times are of the wall clock. */
 std::string headOf(const JoinerChain& joiners) {
@@ -80,7 +89,7 @@ void MapUpdates::update(std::size_t submaps_in_file, double fraction) {
 }
 
 std::optional<JoinOutcome> MapUpdates::join() {
-  Reporter unheard(true);  // what joiners say of a part of the map is not for the log of the run
+  Unheard unheard(reporter_);
   try {
     return joining_.join(submaps_.shown(), unheard, submaps_.byHand());
   } catch (const std::exception& error) {

@@ -10,10 +10,9 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
-
-#include "common_options.h"
 
 namespace submap_slam {
 
@@ -64,6 +63,15 @@ class Configuration {
 
  private:
   std::size_t submap_parameters_;  ///< the first ones of the table are those that the submaps depend on
+};
+
+/** What the user said about the configuration; empty members keep what the ini file says. */
+struct ConfigurationOptions {
+  std::string config_file;            ///< empty: default.ini of the installation
+  std::vector<std::string> settings;  ///< "section.key=value"
+  std::vector<std::string> plugins;   ///< files
+  std::optional<uint64_t> seed;
+  std::string from, to, sensor_labels;
 };
 
 /** The configuration that the user asked for: defaults, then the ini file, then the options. Throws

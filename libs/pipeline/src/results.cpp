@@ -1,4 +1,4 @@
-#include "results.h"
+#include <submap_slam/pipeline/results.h>
 
 #include <fmt/format.h>
 #include <submap_slam/output/graph_file.h>

@@ -3,14 +3,13 @@
 
 #include <submap_slam/core/joined_landmarks.h>
 #include <submap_slam/eval/mapping_progress.h>
+#include <submap_slam/pipeline/stage_timer.h>
 #include <submap_slam/rawlog/log_report.h>
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
-
-#include "stage_timer.h"
 
 namespace submap_slam {
 

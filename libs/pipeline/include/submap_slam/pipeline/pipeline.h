@@ -4,16 +4,15 @@
 #include <submap_slam/core/edits.h>
 #include <submap_slam/core/local_mapper.h>
 #include <submap_slam/output/output_directory.h>
+#include <submap_slam/pipeline/configuration.h>
+#include <submap_slam/pipeline/metrics.h>
+#include <submap_slam/pipeline/reporter.h>
+#include <submap_slam/pipeline/stretch_source.h>
 #include <submap_slam/rawlog/submap_log.h>
 
 #include <cstddef>
 #include <functional>
 #include <string>
-
-#include "configuration.h"
-#include "metrics.h"
-#include "reporter.h"
-#include "stretch_source.h"
 
 namespace submap_slam {
 

@@ -1,4 +1,4 @@
-#include "reporter.h"
+#include "terminal_reporter.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "printable.h"
+#include "stop_signal.h"
 
 namespace submap_slam {
 namespace {
@@ -21,11 +21,11 @@ std::string minutesAndSeconds(double seconds) {
 
 }  // namespace
 
-Reporter::Reporter(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
+TerminalReporter::TerminalReporter(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
 
-Reporter::~Reporter() { endProgressLine(); }
+TerminalReporter::~TerminalReporter() { endProgressLine(); }
 
-void Reporter::startStage(const std::string& stage, double fraction) {
+void TerminalReporter::startStage(const std::string& stage, double fraction) {
   endProgressLine();
   stage_ = stage;
   stage_start_ = Clock::now();
@@ -34,8 +34,8 @@ void Reporter::startStage(const std::string& stage, double fraction) {
   tenths_shown_ = static_cast<int>(fraction * 10);
 }
 
-void Reporter::progress(const std::string& stage, double fraction, std::size_t units,
-                        const std::string& unit) {
+void TerminalReporter::progress(const std::string& stage, double fraction, std::size_t units,
+                                const std::string& unit) {
   if (quiet_) return;
   fraction = std::clamp(fraction, 0.0, 1.0);
   if (stage != stage_) startStage(stage, fraction);
@@ -58,22 +58,19 @@ void Reporter::progress(const std::string& stage, double fraction, std::size_t u
   line_open_ = terminal_;
 }
 
-void Reporter::endProgressLine() {
+void TerminalReporter::endProgressLine() {
   if (line_open_) fmt::print(stderr, "\n");
   line_open_ = false;
 }
 
-void Reporter::log(const std::string& line) { log_.push_back(line); }
+bool TerminalReporter::stopRequested() const { return submap_slam::stopRequested(); }
 
-void Reporter::warning(const std::string& line) {
+void TerminalReporter::showWarning(const std::string& line) {
   endProgressLine();
-  const std::string text = printable(line);
-  fmt::print(stderr, "submap-slam: warning: {}\n", text);
-  log_.push_back("warning: " + text);
-  warnings_.push_back(text);
+  fmt::print(stderr, "submap-slam: warning: {}\n", line);
 }
 
-void Reporter::note(const std::string& line) {
+void TerminalReporter::note(const std::string& line) {
   if (quiet_) return;
   endProgressLine();
   fmt::print(stderr, "{}\n", line);

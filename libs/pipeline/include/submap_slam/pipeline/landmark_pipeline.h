@@ -1,9 +1,9 @@
 /** The way from landmark submaps to a map of landmarks. */
 #pragma once
 
-#include <string>
+#include <submap_slam/pipeline/pipeline.h>
 
-#include "pipeline.h"
+#include <string>
 
 namespace submap_slam {
 

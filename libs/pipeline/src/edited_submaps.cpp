@@ -1,4 +1,4 @@
-#include "edited_submaps.h"
+#include <submap_slam/pipeline/edited_submaps.h>
 
 #include <algorithm>
 

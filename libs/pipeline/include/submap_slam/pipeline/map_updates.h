@@ -1,15 +1,14 @@
 #pragma once
 
 #include <submap_slam/output/output_directory.h>
+#include <submap_slam/pipeline/edited_submaps.h>
+#include <submap_slam/pipeline/joining.h>
+#include <submap_slam/pipeline/reporter.h>
 #include <submap_slam/rawlog/submap_log.h>
 
 #include <cstddef>
 #include <optional>
 #include <string>
-
-#include "edited_submaps.h"
-#include "joining.h"
-#include "reporter.h"
 
 namespace submap_slam {
 

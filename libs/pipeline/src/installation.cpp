@@ -1,4 +1,4 @@
-#include "installation.h"
+#include <submap_slam/pipeline/installation.h>
 
 #include <algorithm>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "landmark_pipeline.h"
+#include <submap_slam/pipeline/landmark_pipeline.h>
 
 #include <fmt/format.h>
 #include <submap_slam/core/errors.h>
@@ -6,15 +6,13 @@
 #include <submap_slam/output/landmark_files.h>
 #include <submap_slam/output/landmark_image.h>
 #include <submap_slam/output/trajectory_file.h>
+#include <submap_slam/pipeline/results.h>
+#include <submap_slam/pipeline/run_files.h>
 #include <submap_slam/rawlog/landmark_log.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-
-#include "results.h"
-#include "run_files.h"
-#include "stop_signal.h"
 
 namespace submap_slam {
 namespace {
@@ -41,7 +39,7 @@ JoinedLandmarks runJoiner(const LandmarkJoiner& joiner, const LandmarkSubmaps& s
   const auto show = [&](double fraction) { reporter.progress("joining with " + joiner.name(), fraction); };
   const auto progress = [&](double fraction, const std::string&) {
     show(fraction);
-    stopped = stopped || stopRequested();
+    stopped = stopped || reporter.stopRequested();
     return !stopped;
   };
   show(0);

@@ -1,4 +1,4 @@
-#include "printable.h"
+#include <submap_slam/pipeline/printable.h>
 
 #include <string_view>
 

@@ -1,4 +1,4 @@
-#include "run_files.h"
+#include <submap_slam/pipeline/run_files.h>
 
 #include <fmt/format.h>
 #include <submap_slam/core/errors.h>
