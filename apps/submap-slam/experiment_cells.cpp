@@ -21,6 +21,7 @@
 
 #include "cell_scores.h"
 #include "child_processes.h"
+#include "common_options.h"
 #include "simulation_files.h"
 #include "stop_signal.h"
 #include "terminal_reporter.h"
