@@ -43,11 +43,13 @@ void run(const SubmapJoiner& joiner, IncrementalJoin& at_work, const GridSubmaps
          JoinOutcome& result, Reporter& reporter) {
   const StageTimer timer;
   const auto show = [&](double fraction) { reporter.progress("joining with " + joiner.name(), fraction); };
-  const auto progress = [&](double fraction, const std::string&) {
+  const auto step = [&](double fraction, const std::string&) {
     show(fraction);
     if (reporter.stopRequested()) result.stopped = true;
     return !result.stopped;
   };
+  ProgressCallback progress(step);
+  if (reporter.showsFrames()) progress = {step, [&reporter](const auto& frames) { reporter.frames(frames); }};
   show(0);
   result.map = at_work.join(submaps, result.map, progress);
   show(1);

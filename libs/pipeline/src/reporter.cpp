@@ -8,6 +8,8 @@ void Reporter::progress(const std::string&, double, std::size_t, const std::stri
 
 void Reporter::note(const std::string&) {}
 
+void Reporter::frames(const std::vector<mrpt::math::TPose2D>&) {}
+
 void Reporter::showWarning(const std::string&) {}
 
 void Reporter::warning(const std::string& line) {

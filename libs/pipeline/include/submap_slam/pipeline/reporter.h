@@ -1,5 +1,7 @@
 #pragma once
 
+#include <mrpt/math/TPose2D.h>
+
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -30,6 +32,12 @@ class Reporter {
 
   /** True once the user wants the run to end soon, with a valid partial result. */
   virtual bool stopRequested() const { return false; }
+
+  /** True if the user watches submaps move while they are joined. */
+  virtual bool showsFrames() const { return false; }
+
+  /** T_w_s of each submap as an iteration left them (m, rad). */
+  virtual void frames(const std::vector<mrpt::math::TPose2D>& T_w_s);
 
   /** Keeps a line for log.txt. */
   void log(const std::string& line) { log_.push_back(line); }
