@@ -94,15 +94,20 @@ void joinAndWrite(const EditedSubmaps& submaps, Joining& joining, const OutputDi
   addTime(metrics, "join_", join_timer);
 
   const StageTimer write_timer;
-  writeResults(out, shown, joined);
-  const auto progress = mappingProgress(shown, joined.frames);
-  addProgressMetrics(metrics, progress);
-  writeText(out.file("submaps.csv"), progressCsv(progress));
-  writeRunRecord(out, config, reporter.logLines());
+  writeJoined(out, shown, joined, config, reporter.logLines(), metrics);
   addTime(metrics, "write_", write_timer);
 }
 
 }  // namespace
+
+void writeJoined(const OutputDirectory& out, const GridSubmaps& submaps, const JoinedMap& joined,
+                 const Configuration& config, const std::vector<std::string>& log, Metrics& metrics) {
+  writeResults(out, submaps, joined);
+  const auto progress = mappingProgress(submaps, joined.frames);
+  addProgressMetrics(metrics, progress);
+  writeText(out.file("submaps.csv"), progressCsv(progress));
+  writeRunRecord(out, config, log);
+}
 
 RunSummary mapRawlog(const std::string& log, const std::string& folder, bool overwrite,
                      const Configuration& config, Reporter& reporter, const Edits& edits) {

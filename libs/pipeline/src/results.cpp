@@ -6,6 +6,7 @@
 #include <submap_slam/output/mrpt_files.h>
 #include <submap_slam/output/replace_file.h>
 #include <submap_slam/output/ros_map.h>
+#include <submap_slam/output/run_tables.h>
 #include <submap_slam/output/text_file.h>
 #include <submap_slam/output/trajectory_file.h>
 
@@ -21,7 +22,8 @@ void writeMapSoFar(const OutputDirectory& out, const GridSubmaps& submaps, const
   replaceFile(out.file("trajectory.tum"), [&](const File& file) { writeTum(file, trajectory); });
   replaceFile(out.file("graph.g2o"),
               [&](const File& file) { writeG2o(file, joined.frames, joined.constraints); });
-  replaceFile(out.file("constraints.csv"),
+  replaceFile(out.file(kFramesFile), [&](const File& file) { writeFrames(file, joined.frames); });
+  replaceFile(out.file(kConstraintsFile),
               [&](const File& file) { writeConstraints(file, joined.constraints); });
 }
 
@@ -30,7 +32,9 @@ void writeResults(const OutputDirectory& out, const GridSubmaps& submaps, const 
   writeRosMap(out.file("map.yaml"), joined.map);
   writeGridMap(out.file("map.gridmap.gz"), joined.map);
   writeSimpleMap(out.file("map.simplemap"), submaps, joined);
-  writeScene(out.file("map.3Dscene"), joined.map, trajectoryOf(submaps, joined), joined.frames);
+  const Trajectory trajectory = trajectoryOf(submaps, joined);
+  writeScene(out.file("map.3Dscene"), joined.map, trajectory, joined.frames);
+  writeSceneLog(out.file("map.rawlog"), joined.map, trajectory, joined.frames);
 }
 
 void writeRunRecord(const OutputDirectory& out, const Configuration& config,

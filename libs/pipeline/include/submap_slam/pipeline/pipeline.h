@@ -46,6 +46,12 @@ RunSummary buildRawlog(const std::string& log, const std::string& submap_file, b
 RunSummary joinFile(const std::string& submap_file, const std::string& folder, bool overwrite,
                     const Configuration& config, Reporter& reporter, const Edits& edits = {});
 
+/** Writes all results of a joining but metrics.json, and adds the figures that come with writing them.
+ * @param submaps those that the joiners got
+ * @param log     lines of log.txt */
+void writeJoined(const OutputDirectory& out, const GridSubmaps& submaps, const JoinedMap& joined,
+                 const Configuration& config, const std::vector<std::string>& log, Metrics& metrics);
+
 /** Called in log order, when the submaps of a stretch are on disk, with the share of the log that was read up
  * to its end. */
 using StretchDone = std::function<void(double)>;
