@@ -1,6 +1,6 @@
 # Everything comes from Debian 12 packages; scripts/install-dependencies names them.
 find_package(mrpt-core REQUIRED)
-foreach(lib rtti serialization io system containers poses math random obs maps opengl img bayes graphs)
+foreach(lib rtti serialization io system containers poses math random obs maps opengl img bayes graphs gui)
   find_package(mrpt-${lib} REQUIRED)
 endforeach()
 find_package(Eigen3 REQUIRED)

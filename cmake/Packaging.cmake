@@ -3,7 +3,7 @@ include(CMakePackageConfigHelpers)
 
 set(submap_slam_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/submap-slam)
 
-install(TARGETS submap-slam RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS submap-slam submap-viewer RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 
 # libsubmap-types.so is both what plugins link against and itself an MRPT plugin: RawLogViewer, SceneViewer3D (-l) and
 # rawlog-edit (-p) load it by its path to understand files of submaps. So its unversioned name is always installed.

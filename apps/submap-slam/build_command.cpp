@@ -1,9 +1,11 @@
+#include <submap_slam/pipeline/configuration.h>
+#include <submap_slam/pipeline/pipeline.h>
+
 #include <memory>
 
 #include "commands.h"
-#include "configuration.h"
-#include "pipeline.h"
 #include "summary.h"
+#include "terminal_reporter.h"
 
 namespace submap_slam {
 namespace {
@@ -18,7 +20,7 @@ int runBuild(BuildOptions& options) {
   const std::string log = takeLog(options.files, options.run.configuration);
   const auto config = loadConfiguration(options.run.configuration);
   const auto limit = limitThreads(options.run.threads);
-  Reporter reporter(options.run.quiet);
+  TerminalReporter reporter(options.run.quiet);
 
   const RunSummary summary = buildRawlog(log, options.submap_file, options.run.overwrite, *config, reporter);
   reporter.note(buildSummary(summary, options.submap_file));

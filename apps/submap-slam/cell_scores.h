@@ -4,12 +4,11 @@
 #include <submap_slam/core/frame.h>
 #include <submap_slam/eval/timed_trajectory.h>
 #include <submap_slam/mapping/evidence_renderer.h>
+#include <submap_slam/pipeline/configuration.h>
+#include <submap_slam/pipeline/metrics.h>
 
 #include <string>
 #include <vector>
-
-#include "configuration.h"
-#include "metrics.h"
 
 namespace submap_slam {
 

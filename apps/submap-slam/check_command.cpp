@@ -1,10 +1,10 @@
 #include <fmt/format.h>
+#include <submap_slam/pipeline/configuration.h>
 #include <submap_slam/rawlog/rawlog_reader.h>
 
 #include <memory>
 
 #include "commands.h"
-#include "configuration.h"
 
 namespace submap_slam {
 namespace {

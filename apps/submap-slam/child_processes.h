@@ -1,11 +1,11 @@
 #pragma once
 
+#include <submap_slam/pipeline/reporter.h>
+
 #include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
-
-#include "reporter.h"
 
 namespace submap_slam {
 

@@ -1,10 +1,10 @@
 #pragma once
 
+#include <submap_slam/pipeline/configuration.h>
 #include <tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,15 +17,6 @@ enum ExitCode : int {
   kBadInput = 2,      ///< wrong option, configuration, plugin or file
   kDamagedLog = 3,    ///< the log is damaged; results of the part before the damage are written
   kInterrupted = 130  ///< Ctrl-C; what was complete is written
-};
-
-/** What the user said about the configuration; empty members keep what the ini file says. */
-struct ConfigurationOptions {
-  std::string config_file;            ///< empty: default.ini of the installation
-  std::vector<std::string> settings;  ///< "section.key=value"
-  std::vector<std::string> plugins;   ///< files
-  std::optional<uint64_t> seed;
-  std::string from, to, sensor_labels;
 };
 
 /** How a subcommand runs. */

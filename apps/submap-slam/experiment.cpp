@@ -4,13 +4,13 @@
 #include <submap_slam/core/errors.h>
 #include <submap_slam/core/ini_file.h>
 #include <submap_slam/core/parameters.h>
+#include <submap_slam/pipeline/configuration.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
 #include <sstream>
 
-#include "configuration.h"
 #include "simulation_files.h"
 
 namespace submap_slam {

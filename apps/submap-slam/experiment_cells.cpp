@@ -8,6 +8,8 @@
 #include <submap_slam/output/json_file.h>
 #include <submap_slam/output/replace_file.h>
 #include <submap_slam/output/trajectory_file.h>
+#include <submap_slam/pipeline/pipeline.h>
+#include <submap_slam/pipeline/results.h>
 #include <submap_slam/rawlog/resume_state.h>
 #include <tbb/info.h>
 
@@ -19,10 +21,10 @@
 
 #include "cell_scores.h"
 #include "child_processes.h"
-#include "pipeline.h"
-#include "results.h"
+#include "common_options.h"
 #include "simulation_files.h"
 #include "stop_signal.h"
+#include "terminal_reporter.h"
 
 namespace submap_slam {
 namespace fs = std::filesystem;
@@ -101,7 +103,7 @@ mrpt::maps::COccupancyGridMap2D readGridMap(const std::string& file) {
 }
 
 Estimate runPipeline(const Cell& cell, const Configuration& config, Metrics& figures) {
-  Reporter reporter(true);
+  TerminalReporter reporter(true);
   const RunSummary summary = mapRawlog(cell.log, cell.folder.string(), true, config, reporter);
   if (summary.interrupted) throw Interrupted();
   figures = summary.metrics;

@@ -1,13 +1,14 @@
 /** Runs the cells of an experiment, each in a folder and a process of its own. */
 #pragma once
 
+#include <submap_slam/pipeline/reporter.h>
+
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 
 #include "experiment.h"
-#include "reporter.h"
 
 namespace submap_slam {
 

@@ -9,6 +9,7 @@
 #include "commands.h"
 #include "experiment_cells.h"
 #include "experiment_table.h"
+#include "terminal_reporter.h"
 
 namespace submap_slam {
 namespace fs = std::filesystem;
@@ -45,7 +46,7 @@ int runExperiment(ExperimentOptions& options) {
     return kSuccess;
   }
   openExperimentFolder(options);
-  Reporter reporter(options.quiet);
+  TerminalReporter reporter(options.quiet);
   const bool finished = runCells(experiment, options.run, reporter);
   const std::size_t missing = writeTables(experiment, folder);
   const std::string table = (folder / "table.md").string();

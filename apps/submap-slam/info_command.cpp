@@ -1,4 +1,6 @@
 #include <fmt/format.h>
+#include <submap_slam/pipeline/configuration.h>
+#include <submap_slam/pipeline/run_files.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -6,10 +8,8 @@
 #include <memory>
 
 #include "commands.h"
-#include "configuration.h"
 #include "overlap.h"
-#include "reporter.h"
-#include "run_files.h"
+#include "terminal_reporter.h"
 
 namespace submap_slam {
 namespace {
@@ -58,7 +58,7 @@ int runInfo(const std::string& file) {
   fmt::print("{} submaps, {:.1f} m, {} nodes, {} key nodes, {} observed cells\n", submaps.size(),
              totals.path_m, totals.nodes, totals.keys, totals.cells);
   if (read.damage.empty()) return kSuccess;
-  Reporter(true).warning(read.damage);
+  TerminalReporter(true).warning(read.damage);
   return kDamagedLog;
 }
 

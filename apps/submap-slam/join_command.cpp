@@ -1,14 +1,15 @@
 #include <fmt/format.h>
 #include <submap_slam/core/errors.h>
+#include <submap_slam/pipeline/configuration.h>
+#include <submap_slam/pipeline/landmark_pipeline.h>
+#include <submap_slam/pipeline/pipeline.h>
 #include <submap_slam/rawlog/landmark_log.h>
 
 #include <memory>
 
 #include "commands.h"
-#include "configuration.h"
-#include "landmark_pipeline.h"
-#include "pipeline.h"
 #include "summary.h"
+#include "terminal_reporter.h"
 
 namespace submap_slam {
 namespace {
@@ -48,7 +49,7 @@ int runJoin(const JoinOptions& options) {
         fmt::format("{}: --unknown-association: expected a file of landmark submaps", options.submap_file));
   if (options.unknown_association) ignoreIds(*config);
   const auto limit = limitThreads(options.run.threads);
-  Reporter reporter(options.run.quiet);
+  TerminalReporter reporter(options.run.quiet);
   const RunSummary summary = (landmarks ? joinLandmarks : joinGrids)(options, *config, reporter);
   reporter.note((landmarks ? landmarkSummary : mapSummary)(summary, options.folder));
   return exitCodeOf(summary);

@@ -3,11 +3,11 @@
 #include <malloc.h>
 #include <submap_slam/core/errors.h>
 #include <submap_slam/core/version.h>
+#include <submap_slam/pipeline/printable.h>
 
 #include <cstdio>
 
 #include "commands.h"
-#include "printable.h"
 #include "stop_signal.h"
 
 namespace {

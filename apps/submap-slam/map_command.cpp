@@ -1,11 +1,13 @@
 #include <fmt/format.h>
+#include <submap_slam/pipeline/configuration.h>
+#include <submap_slam/pipeline/pipeline.h>
 
 #include <memory>
 
 #include "commands.h"
-#include "configuration.h"
-#include "pipeline.h"
 #include "summary.h"
+#include "terminal_reporter.h"
+#include "viewer_process.h"
 
 namespace submap_slam {
 namespace {
@@ -14,6 +16,7 @@ struct MapOptions {
   RunOptions run;
   std::vector<std::string> files;
   std::string folder, edits_file;
+  bool view = false;
 };
 
 int runMap(MapOptions& options) {
@@ -21,7 +24,8 @@ int runMap(MapOptions& options) {
   const auto config = loadConfiguration(options.run.configuration);
   const Edits edits = options.edits_file.empty() ? Edits{} : readEdits(options.edits_file);
   const auto limit = limitThreads(options.run.threads);
-  Reporter reporter(options.run.quiet);
+  TerminalReporter reporter(options.run.quiet);
+  if (options.view) startViewer(options.folder);
 
   const RunSummary summary = mapRawlog(log, options.folder, options.run.overwrite, *config, reporter, edits);
   reporter.note(mapSummary(summary, options.folder));
@@ -51,6 +55,15 @@ void addMapCommand(CLI::App& app, int& exit_code) {
           "always "
           "those of the submaps so far, updates.csv tells what each update took; as --set "
           "joining.incremental=true")
+      ->group("Run");
+  command
+      ->add_flag_callback(
+          "--view",
+          [options] {
+            options->view = true;
+            options->run.configuration.settings.emplace_back("joining.incremental=true");
+          },
+          "Watch in submap-viewer how the map grows; as --incremental otherwise")
       ->group("Run");
   command->footer(
       "A run that was stopped goes on when the same command is given again.\n"

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
+#include <submap_slam/pipeline/configuration.h>
 
 #include <iostream>
 #include <memory>
 
 #include "commands.h"
-#include "configuration.h"
 
 namespace submap_slam {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "commands.h"
 #include "common_options.h"
-#include "reporter.h"
 #include "simulation_files.h"
+#include "terminal_reporter.h"
 
 namespace submap_slam {
 namespace {
@@ -31,7 +31,7 @@ int runSimulate(const SimulateOptions& options) {
   if (!options.overwrite) refuseExisting(files);
   const RawlogForm form = options.actions ? RawlogForm::kActions : RawlogForm::kObservations;
   const std::size_t scans = writeSimulation(scenario, seed, form, files);
-  Reporter(options.quiet)
+  TerminalReporter(options.quiet)
       .note(fmt::format("{} scans, {:.1f} s\nlog: {}\ntruth: {}\nodometry: {}", scans,
                         static_cast<double>(scans - 1) / scenario.scan_rate, files.log, files.truth,
                         files.odometry));

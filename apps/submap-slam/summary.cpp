@@ -1,10 +1,9 @@
 #include "summary.h"
 
 #include <fmt/format.h>
+#include <submap_slam/pipeline/run_files.h>
 
 #include <filesystem>
-
-#include "run_files.h"
 
 namespace submap_slam {
 namespace {

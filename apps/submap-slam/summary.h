@@ -1,9 +1,10 @@
 #pragma once
 
+#include <submap_slam/pipeline/pipeline.h>
+
 #include <string>
 
 #include "common_options.h"
-#include "pipeline.h"
 
 namespace submap_slam {
 

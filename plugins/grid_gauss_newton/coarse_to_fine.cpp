@@ -107,10 +107,10 @@ LevelResult Schedule::optimiseLevel(std::size_t k, const LevelProblem& problem, 
   iteration.cost_decrease *= cells;
   if (k > 0) iteration.largest_damping = kLargestCoarseDamping;
   iteration.step = stepFunction(options_.solver, problem);
-  return optimise(problem, start, at_start, iteration, [&](JoinIteration i) {
+  return optimise(problem, start, at_start, iteration, [&](JoinIteration i, const Frames& frames) {
     i.level = static_cast<int>(k);
     iterations_.push_back(i);
-    return !callback_ || callback_(i);
+    return !callback_ || callback_(i, frames);
   });
 }
 

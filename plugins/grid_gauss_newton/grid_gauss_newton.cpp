@@ -137,7 +137,8 @@ JoinedMap GridGaussNewton::join(const GridSubmaps& submaps, const JoinedMap& ini
   }
 
   int level = levels_ - 1, in_level = 0;
-  const auto report = [&](const JoinIteration& i) {
+  const auto report = [&](const JoinIteration& i, const Frames& frames) {
+    progress.showFrames(frames);
     in_level = i.level == level ? in_level + 1 : 1;
     level = i.level;
     return !progress || progress(shareDone(levels_, level, in_level, max_iterations_), "joining grids");

@@ -134,7 +134,7 @@ LevelResult optimise(const LevelProblem& problem, const Frames& start, const Eva
       damping = std::max(kEffectiveDamping, damping * kDampingUp);
     }
     now.iterations.push_back(iteration);
-    if (callback && !callback(iteration)) return now.stop = StopReason::kCancelled, now;
+    if (callback && !callback(iteration, now.frames)) return now.stop = StopReason::kCancelled, now;
     if (small_step) return now.stop = StopReason::kSmallStep, now;
     if (small_decrease) return now.stop = StopReason::kSmallDecrease, now;
     if (damping > options.largest_damping) return now.stop = StopReason::kNoDescent, now;

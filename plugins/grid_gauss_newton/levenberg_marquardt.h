@@ -74,8 +74,8 @@ struct LevelResult {
   StopReason stop = StopReason::kIterationLimit;
 };
 
-/** Called after each iteration; false stops. */
-using IterationCallback = std::function<bool(const JoinIteration&)>;
+/** Called after each iteration with the frames it led to; false stops. */
+using IterationCallback = std::function<bool(const JoinIteration&, const Frames&)>;
 
 /** Gauss-Newton with Levenberg-Marquardt damping: a step is taken only if it lowers the objective, so the
  * result is never worse than the start. The first frame of every connected group stays where it is.

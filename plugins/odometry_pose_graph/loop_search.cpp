@@ -104,6 +104,7 @@ class LoopSearch::State {
 
   LoopSearchResult search(const GridSubmaps& submaps, const std::function<bool(double)>& progress,
                           const HandEdits& by_hand);
+  const std::vector<TPose2D>& frames() const { return result_.graph.frames; }
 
  private:
   struct Task {
@@ -301,5 +302,7 @@ LoopSearchResult LoopSearch::search(const GridSubmaps& submaps, const std::funct
                                     const HandEdits& by_hand) {
   return state_->search(submaps, progress, by_hand);
 }
+
+const std::vector<TPose2D>& LoopSearch::frames() const { return state_->frames(); }
 
 }  // namespace submap_slam::pose_graph

@@ -73,6 +73,9 @@ class LoopSearch {
   LoopSearchResult search(const GridSubmaps& submaps, const std::function<bool(double)>& progress,
                           const HandEdits& by_hand = {});
 
+  /** The frames of the submaps that were searched so far, T_w_s (m, rad). */
+  const std::vector<mrpt::math::TPose2D>& frames() const;
+
  private:
   class State;
   std::unique_ptr<State> state_;

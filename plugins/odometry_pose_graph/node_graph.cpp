@@ -36,7 +36,14 @@ class NodeProblem {
       addOdometryAlongThePath();
   }
 
-  Solution solve() { return submap_slam::pose_graph::solve(problem_); }
+  Solution solve(const FramesCallback& show) {
+    if (!show) return submap_slam::pose_graph::solve(problem_);
+    return submap_slam::pose_graph::solve(problem_, [&] {
+      std::vector<TPose2D> frames;
+      for (std::size_t k = 0; k < blocks_.size(); ++k) frames.push_back(frame(k));
+      show(frames);
+    });
+  }
 
   TPose2D frame(std::size_t k) const { return blocks_[k].front().pose(); }
 
@@ -174,18 +181,19 @@ void weightByTheResult(FrameGraph& graph) {
 
 }  // namespace
 
-FusedGraph fuseOdometry(const GridSubmaps& submaps, FrameGraph found, const FusionParams& params) {
+FusedGraph fuseOdometry(const GridSubmaps& submaps, FrameGraph found, const FusionParams& params,
+                        const FramesCallback& show) {
   const GraphNodes nodes = graphNodesOf(submaps, params.node_distance, params.node_angle);
-  return fuseOdometry(submaps, std::move(found), params, odometryModelOf(submaps, nodes));
+  return fuseOdometry(submaps, std::move(found), params, odometryModelOf(submaps, nodes), show);
 }
 
 FusedGraph fuseOdometry(const GridSubmaps& submaps, FrameGraph found, const FusionParams& params,
-                        const OdometryModel& odometry) {
+                        const OdometryModel& odometry, const FramesCallback& show) {
   FusedGraph fused;
   fused.odometry = odometry;
   const GraphNodes nodes = graphNodesOf(submaps, params.node_distance, params.node_angle);
   NodeProblem problem(submaps, found, params, nodes, odometry);
-  fused.solution = problem.solve();
+  fused.solution = problem.solve(show);
   if (fused.solution != Solution::kUnusable) {
     for (std::size_t k = 0; k < submaps.size(); ++k) {
       found.frames[k] = problem.frame(k);

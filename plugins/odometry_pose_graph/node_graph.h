@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,9 @@ struct FusedGraph {
   std::vector<std::vector<mrpt::math::TPose2D>> nodes;
 };
 
+/** Called with the frames that an iteration led to. */
+using FramesCallback = std::function<void(const std::vector<mrpt::math::TPose2D>&)>;
+
 /** Minimises over submap frames and nodes
  *
  *     Σ ρ(intra-submap) + Σ ρ(inter-submap) + Σ ρ(odometry)
@@ -44,11 +48,13 @@ struct FusedGraph {
  * the loops of the graph. What is by hand has ρ(s) = s. Nodes between those with a pose of their own move
  * along.
  * @param found frames to start from, chain and loops; their usual covariances count. Those of the chain come
- * back as far as the result bears them out: divided by ρ' there. */
+ * back as far as the result bears them out: divided by ρ' there.
+ * @param show may be empty */
 FusedGraph fuseOdometry(const GridSubmaps& submaps, FrameGraph found, const FusionParams& params,
-                        const OdometryModel& odometry);
+                        const OdometryModel& odometry, const FramesCallback& show = {});
 
 /** The same with the odometry model of the log. */
-FusedGraph fuseOdometry(const GridSubmaps& submaps, FrameGraph found, const FusionParams& params);
+FusedGraph fuseOdometry(const GridSubmaps& submaps, FrameGraph found, const FusionParams& params,
+                        const FramesCallback& show = {});
 
 }  // namespace submap_slam::pose_graph

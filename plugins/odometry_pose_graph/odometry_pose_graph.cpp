@@ -67,6 +67,16 @@ void append(std::vector<Constraint>& constraints, const std::vector<Constraint>&
   constraints.insert(constraints.end(), others.begin(), others.end());
 }
 
+/** Frames for all submaps: those that are known, and the rest hanging on to them as at first. */
+std::vector<mrpt::math::TPose2D> completed(std::vector<mrpt::math::TPose2D> frames,
+                                           const JoinedMap& initial) {
+  for (std::size_t k = frames.size(); k < initial.frames.size(); ++k) {
+    const auto at_first = [&](std::size_t i) { return initial.frames[i].mean.asTPose(); };
+    frames.push_back(k == 0 ? at_first(0) : frames[k - 1] + (at_first(k) - at_first(k - 1)));
+  }
+  return frames;
+}
+
 /** Loop search that goes on as submaps come, then the fusion of all. */
 class GrowingGraph : public IncrementalJoin {
  public:
@@ -92,10 +102,15 @@ JoinedMap GrowingGraph::join(const GridSubmaps& submaps, const JoinedMap& initia
     joined.reason = "there is only one submap";
     return joined;
   }
-  const auto report = [&](double share) { return !progress || progress(share, "closing loops"); };
+  const auto report = [&](double share) {
+    if (progress.showsFrames()) progress.showFrames(completed(search_.frames(), initial));
+    return !progress || progress(share, "closing loops");
+  };
+  FramesCallback show;
+  if (progress.showsFrames()) show = [&progress](const auto& frames) { progress.showFrames(frames); };
   const HandEdits by_hand = handEditsOf(initial.constraints, submaps);
   const LoopSearchResult found = search_.search(submaps, report, by_hand);
-  const FusedGraph fused = fuseOdometry(submaps, found.graph, fusion_);
+  const FusedGraph fused = fuseOdometry(submaps, found.graph, fusion_, show);
   joined.nodes = fused.nodes.empty() ? initial.nodes : fused.nodes;
   joined.constraints = chainConstraints(fused.frames, submaps);
   append(joined.constraints, found.candidates);

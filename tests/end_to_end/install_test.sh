@@ -64,4 +64,11 @@ expect_refused "$work_dir/text.so" "cannot be loaded"
 
 echo "--- types library as an MRPT plugin"
 [[ -n $(find "$prefix" -name libsubmap-types.so) ]] || fail "libsubmap-types.so is not installed"
+
+echo "--- viewers"
+for file in bin/submap-viewer bin/submap-rawlogviewer share/applications/submap-viewer.desktop share/mime/packages/submap-slam.xml; do
+  [[ -e $prefix/$file ]] || fail "$file is not installed"
+done
+library=$(grep -o '\.\./[^"]*\.so' "$prefix/bin/submap-rawlogviewer")
+[[ -n $library && -e $prefix/bin/$library ]] || fail "submap-rawlogviewer names no installed library: '$library'"
 echo "passed"

@@ -115,6 +115,23 @@ TEST_F(GridGaussNewtonPlugin, FindsAKnownDisplacementInARoom) {
   EXPECT_FALSE(joined.iterations.empty());
 }
 
+TEST_F(GridGaussNewtonPlugin, ShowsItsFramesAfterEachIterationAndGivesTheSameResult) {
+  const RoomProblem p;
+  PoseList start = p.truth;
+  start[1].x += 0.2;
+  JoinedMap initial;
+  initial.frames = asGaussians(start);
+  initial.constraints = chainSubmaps(p.submaps).constraints;
+  std::vector<PoseList> shown;
+  const ProgressCallback progress([](double, const std::string&) { return true; },
+                                  [&shown](const PoseList& frames) { shown.push_back(frames); });
+  const JoinedMap joined = joiner->join(p.submaps, initial, progress);
+  EXPECT_EQ(shown.size(), joined.iterations.size());
+  ASSERT_FALSE(shown.empty());
+  expectSameFrames(joined, shown.back());
+  expectSameFrames(join(p.submaps, start), shown.back());
+}
+
 TEST_F(GridGaussNewtonPlugin, FindsALargeDisplacementThroughThePyramid) {
   const RoomProblem p;
   PoseList start = p.truth;

@@ -260,6 +260,21 @@ TEST(OdometryPoseGraph, AddingSubmapsGivesWhatAllAtOnceGive) {
   }
 }
 
+TEST(OdometryPoseGraph, ShowsItsFramesOnTheWayAndGivesTheSameResult) {
+  const BentLoop loop(0.03);
+  const JoinedMap initial = chainSubmaps(loop.submaps);
+  std::vector<std::vector<TPose2D>> shown;
+  const ProgressCallback progress([](double, const std::string&) { return true; },
+                                  [&shown](const std::vector<TPose2D>& frames) { shown.push_back(frames); });
+  const JoinedMap joined = OdometryPoseGraph().join(loop.submaps, initial, progress);
+  ASSERT_GT(shown.size(), loop.submaps.size());  // of the search, then of the fusion
+  for (const auto& frames : shown) EXPECT_EQ(frames.size(), loop.submaps.size());
+  EXPECT_NEAR(shown.front().back().y, initial.frames.back().mean.y(), 1e-9);  // nothing is found yet
+  for (std::size_t k = 0; k < loop.submaps.size(); ++k)
+    EXPECT_NEAR(shown.back()[k].y, joined.frames[k].mean.y(), 1e-9);
+  expectSameBits(joined, OdometryPoseGraph().join(loop.submaps, initial, {}));
+}
+
 TEST(OdometryPoseGraph, GoesOnAfterAStop) {
   const BentLoop loop(0.03);
   const OdometryPoseGraph joiner;

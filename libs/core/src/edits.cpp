@@ -178,6 +178,12 @@ bool Edits::masks(uint32_t submap) const {
                      [submap](const Edit& edit) { return edit.kind == Kind::kMask && edit.to == submap; });
 }
 
+Edit readEdit(const std::string& line, const std::string& where) {
+  const Words words = wordsOf(line);
+  if (words.empty()) throw InputError(fmt::format("{}: expected reject, add, fix or mask", where));
+  return editOf(words, where);
+}
+
 Edits readEdits(const std::string& file) {
   if (!std::filesystem::is_regular_file(file)) throw InputError(fmt::format("{}: no such edits file", file));
   std::ifstream in(file);

@@ -64,6 +64,13 @@ void writeStatistics(CArchive& out, const SubmapStatistics& s) {
       << s.resamplings << s.ambiguous_scans << s.closed_because;
 }
 
+/** Sum over all cells. */
+double totalHits(const PackedEvidence& evidence) {
+  double sum = 0;
+  evidence.forEachObserved([&sum](int, int, float, float hits) { sum += static_cast<double>(hits); });
+  return sum;
+}
+
 SubmapStatistics readStatistics(CArchive& in) {
   SubmapStatistics s;
   in >> s.match_score_mean >> s.match_score_min >> s.match_score_max >> s.rescues >> s.max_particles >>
@@ -203,28 +210,32 @@ void GridSubmap::getDescriptionAsText(std::ostream& out) const {
       "\nGrid submap {}\n"
       "  frames of the log : {} to {}\n"
       "  nodes             : {} ({} with scans), path {:.2f} m\n"
-      "  grid              : {} x {} cells of {:.3f} m, {} observed\n"
+      "  grid              : {} x {} cells of {:.3f} m, {} observed, {:.0f} hits\n"
       "  end pose          : x {:.3f} m, y {:.3f} m, heading {:.2f} deg\n"
       "  its 1-sigma       : x {:.4f} m, y {:.4f} m, heading {:.3f} deg\n"
       "  match score       : mean {:.3f}, min {:.3f}, max {:.3f}\n"
       "  filter            : {} rescues, {} ambiguous scans, at most {} particles, {} resamplings\n"
       "  closed because    : {}\n",
       id, first_frame, end_frame, nodes.size(), keyNodes(), pathLength(), grid.columns, grid.rows,
-      grid.resolution, grid.observed_cells, end.x(), end.y(), mrpt::RAD2DEG(end.phi()),
-      std::sqrt(end_pose.cov(0, 0)), std::sqrt(end_pose.cov(1, 1)),
+      grid.resolution, grid.observed_cells, totalHits(*packedEvidence()), end.x(), end.y(),
+      mrpt::RAD2DEG(end.phi()), std::sqrt(end_pose.cov(0, 0)), std::sqrt(end_pose.cov(1, 1)),
       mrpt::RAD2DEG(std::sqrt(end_pose.cov(2, 2))), statistics.match_score_mean, statistics.match_score_min,
       statistics.match_score_max, statistics.rescues, statistics.ambiguous_scans, statistics.max_particles,
       statistics.resamplings, statistics.closed_because);
 }
 
 std::string GridSubmap::exportTxtHeader() const {
-  return "id first_frame end_frame nodes key_nodes path_m cells end_x_m end_y_m end_phi_rad";
+  return "id first_frame end_frame nodes key_nodes path_m cells end_x_m end_y_m end_phi_rad "
+         "hits end_sigma_x_m end_sigma_y_m end_sigma_phi_rad";
 }
 
 std::string GridSubmap::exportTxtDataRow() const {
-  return fmt::format("{} {} {} {} {} {:.4f} {} {:.9g} {:.9g} {:.9g}", id, first_frame, end_frame,
-                     nodes.size(), keyNodes(), pathLength(), evidenceSummary().observed_cells,
-                     end_pose.mean.x(), end_pose.mean.y(), end_pose.mean.phi());
+  const EvidenceSummary grid = evidenceSummary();
+  const auto sigma = [this](int i) { return std::sqrt(end_pose.cov(i, i)); };
+  return fmt::format("{} {} {} {} {} {:.4f} {} {:.9g} {:.9g} {:.9g} {:.0f} {:.6g} {:.6g} {:.6g}", id,
+                     first_frame, end_frame, nodes.size(), keyNodes(), pathLength(), grid.observed_cells,
+                     end_pose.mean.x(), end_pose.mean.y(), end_pose.mean.phi(), totalHits(*packedEvidence()),
+                     sigma(0), sigma(1), sigma(2));
 }
 
 void GridSubmap::getVisualizationInto(mrpt::opengl::CSetOfObjects& out) const {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <mrpt/maps/COccupancyGridMap2D.h>
 #include <mrpt/maps/CSimpleMap.h>
+#include <mrpt/obs/CObservation3DScene.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/opengl/CEllipsoid2D.h>
 #include <mrpt/opengl/COpenGLScene.h>
@@ -81,6 +82,22 @@ mrpt::opengl::CEllipsoid2D::Ptr ellipseObject(const CPosePDFGaussian& frame) {
   return ellipse;
 }
 
+/** What writeScene and writeSceneLog write. */
+mrpt::opengl::COpenGLScene::Ptr mapScene(const EvidenceGrid& map, const Trajectory& trajectory,
+                                         const std::vector<CPosePDFGaussian>& frames) {
+  auto scene = mrpt::opengl::COpenGLScene::Create();
+  scene->insert(gridObject(map));
+  scene->insert(trajectoryObject(trajectory));
+  auto submaps = mrpt::opengl::CSetOfObjects::Create();
+  submaps->setName("submaps");
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    submaps->insert(frameObject(i, frames[i]));
+    submaps->insert(ellipseObject(frames[i]));
+  }
+  scene->insert(submaps);
+  return scene;
+}
+
 }  // namespace
 
 void writeGridMap(const std::string& file, const EvidenceGrid& map) {
@@ -98,17 +115,16 @@ void writeSimpleMap(const std::string& file, const GridSubmaps& submaps, const J
 
 void writeScene(const std::string& file, const EvidenceGrid& map, const Trajectory& trajectory,
                 const std::vector<CPosePDFGaussian>& frames) {
-  mrpt::opengl::COpenGLScene scene;
-  scene.insert(gridObject(map));
-  scene.insert(trajectoryObject(trajectory));
-  auto submaps = mrpt::opengl::CSetOfObjects::Create();
-  submaps->setName("submaps");
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    submaps->insert(frameObject(i, frames[i]));
-    submaps->insert(ellipseObject(frames[i]));
-  }
-  scene.insert(submaps);
-  writeBytes(file, compressedArchive(scene));
+  writeBytes(file, compressedArchive(*mapScene(map, trajectory, frames)));
+}
+
+void writeSceneLog(const std::string& file, const EvidenceGrid& map, const Trajectory& trajectory,
+                   const std::vector<CPosePDFGaussian>& frames) {
+  mrpt::obs::CObservation3DScene observation;
+  observation.sensorLabel = "MAP";
+  observation.timestamp = trajectory.empty() ? INVALID_TIMESTAMP : trajectory.back().stamp;
+  observation.scene = mapScene(map, trajectory, frames);
+  writeBytes(file, compressedArchive(observation));
 }
 
 }  // namespace submap_slam

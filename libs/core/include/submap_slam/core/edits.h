@@ -35,6 +35,9 @@ struct Edits {
   bool masks(uint32_t submap) const;
 };
 
+/** One edit from its line (see readEdits). Throws InputError beginning with `where` for any other line. */
+Edit readEdit(const std::string& line, const std::string& where);
+
 /** Reads an edits file: one edit per line, `#` begins a comment,
  *
  *     reject FROM TO

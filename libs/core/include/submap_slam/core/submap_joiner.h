@@ -31,7 +31,8 @@ class SubmapJoiner : public Joiner {
    * @param submaps  in log order, at least one
    * @param initial  frames to start from, one for each submap (from the chain or the joiner before), with the
    * constraints so far; those by hand bind
-   * @param progress may be empty; false from it ends the iteration early with the best frames so far
+   * @param progress may be empty; false from it ends the iteration early with the best frames so far. A
+   * joiner that iterates shows its frames (ProgressCallback::showFrames), so that one can look on
    * @return frames with the first one fixed, and the nodes of `initial` unless the joiner places them anew; a
    * status instead of an exception for every numerical outcome.
    * The global map may be left empty: the caller then fuses it by eq. (15). The result must not depend on the

@@ -23,4 +23,9 @@ void writeSimpleMap(const std::string& file, const GridSubmaps& submaps, const J
 void writeScene(const std::string& file, const EvidenceGrid& map, const Trajectory& trajectory,
                 const std::vector<mrpt::poses::CPosePDFGaussian>& frames);
 
+/** Writes a rawlog with one mrpt::obs::CObservation3DScene that holds the same scene, stamped as the end of
+ * the trajectory: RawLogViewer and rawlog-edit open it without any plugin. */
+void writeSceneLog(const std::string& file, const EvidenceGrid& map, const Trajectory& trajectory,
+                   const std::vector<mrpt::poses::CPosePDFGaussian>& frames);
+
 }  // namespace submap_slam

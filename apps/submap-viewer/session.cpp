@@ -1,0 +1,114 @@
+#include "session.h"
+
+#include <fmt/format.h>
+#include <submap_slam/core/errors.h>
+#include <submap_slam/output/json_file.h>
+#include <submap_slam/output/output_directory.h>
+#include <submap_slam/output/text_file.h>
+#include <submap_slam/pipeline/pipeline.h>
+#include <submap_slam/pipeline/run_files.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace submap_slam {
+
+const std::vector<LayerKey>& layerKeys() {
+  static const std::vector<LayerKey> keys{
+      {'g', Layer::kGrids},    {'m', Layer::kMap},      {'t', Layer::kTrajectory}, {'f', Layer::kFrames},
+      {'u', Layer::kEllipses}, {'l', Layer::kAccepted}, {'r', Layer::kRejected},   {'s', Layer::kScan}};
+  return keys;
+}
+
+Session::Session(const ViewerOptions& options) : config_(loadConfiguration(options.configuration)) {
+  if (!options.follow.empty()) {
+    follower_.emplace(options.follow);
+  } else {
+    message_ = openInto(model_, options.source);
+  }
+  if (!options.edits_file.empty()) {
+    Edits edits = readEdits(options.edits_file);
+    checkEdits(edits, model_.submaps());
+    model_.setEdits(std::move(edits));
+  }
+  for (const char key : options.layers) {
+    const auto found = std::find_if(layerKeys().begin(), layerKeys().end(),
+                                    [key](const LayerKey& k) { return k.key == key; });
+    if (found == layerKeys().end())
+      throw ConfigError(fmt::format("--toggle: '{}' is no layer; expected some of gmtfulrs", key));
+    model_.toggle(found->layer);
+  }
+}
+
+std::vector<std::string> Session::joinerNames() const {
+  std::vector<std::string> names{"chain: " +
+                                 (config_->joining.chain.empty() ? "none" : config_->joining.chain)};
+  for (const auto& joiner : config_->joiners)
+    if (std::dynamic_pointer_cast<SubmapJoiner>(joiner)) names.push_back(joiner->name());
+  return names;
+}
+
+JoinerChain Session::joinersOf(std::size_t choice) const {
+  if (choice == 0) return config_->joinerChain();
+  const std::string name = joinerNames().at(choice);
+  for (const auto& joiner : config_->joiners)
+    if (auto of_grids = std::dynamic_pointer_cast<SubmapJoiner>(joiner); of_grids && joiner->name() == name) {
+      of_grids->validate();
+      return {of_grids};
+    }
+  return {};
+}
+
+std::vector<const Parameter*> Session::parametersOf(std::size_t choice) const {
+  std::vector<const Parameter*> parameters;
+  for (const auto& joiner : joinersOf(choice))
+    for (const Parameter& parameter : config_->table.parameters())
+      if (parameter.section == joiner->name()) parameters.push_back(&parameter);
+  return parameters;
+}
+
+void Session::join(std::size_t choice) {
+  if (worker_.busy()) return;
+  if (model_.submaps().empty()) throw ConfigError("there are no submaps to join");
+  JoinTask task{model_.submaps(), model_.edits(), joinersOf(choice), config_->joining.map_resolution, {}};
+  if (choice > 0) task.from = model_.joined();
+  joined_submaps_ = maskSubmaps(task.submaps, task.edits);
+  worker_.start(std::move(task));
+}
+
+bool Session::update() {
+  const bool more = follower_ && !worker_.busy() && follower_->update(model_);
+  if (!worker_.busy()) return more;
+  take(worker_.takeNews());
+  return true;
+}
+
+void Session::take(JoinNews news) {
+  if (!news.stage.empty()) message_ = fmt::format("{}: {:.0f} %", news.stage, 100 * news.fraction);
+  if (news.frames) model_.setFrames(*news.frames);
+  if (!news.error.empty()) message_ = "not joined: " + news.error;
+  if (!news.outcome) return;
+  log_ = std::move(news.log);
+  message_ = fmt::format("joined: {} ({}){}", toString(news.outcome->map.status), news.outcome->map.reason,
+                         news.outcome->stopped ? ", stopped" : "");
+  model_.setJoined(std::move(news.outcome->map));
+}
+
+void Session::saveResults(const std::string& folder) {
+  if (joined_submaps_.empty() || worker_.busy())
+    throw ConfigError("join the submaps first; then the result can be saved");
+  const OutputDirectory out(folder, false);
+  Metrics metrics;
+  addJoinMetrics(metrics, joined_submaps_, model_.joined());
+  writeJoined(out, joined_submaps_, model_.joined(), *config_, log_, metrics);
+  writeJson(out.file(kMetricsFile), metrics);
+  saveEdits(out.file("edits.txt"));
+  message_ = "saved to " + folder;
+}
+
+void Session::saveEdits(const std::string& file) {
+  writeText(file, model_.editsText());
+  message_ = fmt::format("{} edits saved to {}", model_.edits().list.size(), file);
+}
+
+}  // namespace submap_slam

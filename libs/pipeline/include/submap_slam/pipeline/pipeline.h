@@ -1,0 +1,66 @@
+/** The whole way from a rawlog to a map. */
+#pragma once
+
+#include <submap_slam/core/edits.h>
+#include <submap_slam/core/local_mapper.h>
+#include <submap_slam/output/output_directory.h>
+#include <submap_slam/pipeline/configuration.h>
+#include <submap_slam/pipeline/metrics.h>
+#include <submap_slam/pipeline/reporter.h>
+#include <submap_slam/pipeline/stretch_source.h>
+#include <submap_slam/rawlog/submap_log.h>
+
+#include <cstddef>
+#include <functional>
+#include <string>
+
+namespace submap_slam {
+
+/** How a run ended and what it says of itself. */
+// NOLINTNEXTLINE(bugprone-exception-escape): takes asserts of the JSON library for throws
+struct RunSummary {
+  Metrics metrics;                 ///< what metrics.json holds
+  bool damaged = false;            ///< the log is damaged; the part before the damage was used
+  bool interrupted = false;        ///< a stop signal ended it early
+  std::size_t submaps_in_map = 0;  ///< of the latest map that an incremental run wrote while it built submaps
+  bool failed = false;             ///< landmark submaps could not be joined; what is written is not joined
+};
+
+/** Maps a rawlog: reads frames, cuts them into stretches, builds their submaps, joins them, writes all
+ * results to a folder.
+ *
+ * A run that was stopped or killed is continued when it is started again; its results have the same bytes as
+ * those of a run that never stopped, also for any number of threads (metrics.json, which holds times,
+ * excepted).
+ * @param overwrite start anew in a folder that holds something
+ * @param edits     applied to the joining; if they do not fit the submaps these are kept, and the same call
+ * with others goes on from there */
+RunSummary mapRawlog(const std::string& log, const std::string& folder, bool overwrite,
+                     const Configuration& config, Reporter& reporter, const Edits& edits = {});
+
+/** The first half of mapRawlog: submaps of a rawlog into a file. */
+RunSummary buildRawlog(const std::string& log, const std::string& submap_file, bool overwrite,
+                       const Configuration& config, Reporter& reporter);
+
+/** The second half of mapRawlog: from a file of submaps to all results. */
+RunSummary joinFile(const std::string& submap_file, const std::string& folder, bool overwrite,
+                    const Configuration& config, Reporter& reporter, const Edits& edits = {});
+
+/** Writes all results of a joining but metrics.json, and adds the figures that come with writing them.
+ * @param submaps those that the joiners got
+ * @param log     lines of log.txt */
+void writeJoined(const OutputDirectory& out, const GridSubmaps& submaps, const JoinedMap& joined,
+                 const Configuration& config, const std::vector<std::string>& log, Metrics& metrics);
+
+/** Called in log order, when the submaps of a stretch are on disk, with the share of the log that was read up
+ * to its end. */
+using StretchDone = std::function<void(double)>;
+
+/** Builds the submaps of all stretches that `writer` does not have yet, in parallel; each is on disk before
+ * the progress goes on. Memory does not grow with the log. After a stop signal no stretch is begun any more;
+ * returns false if it left stretches out.
+ * @param on_disk may be empty; the file does not change while it runs, but stretches are built meanwhile */
+bool buildSubmaps(StretchSource& source, const LocalMapper& mapper, SubmapLogWriter& writer,
+                  Reporter& reporter, const StretchDone& on_disk = {});
+
+}  // namespace submap_slam

@@ -1,0 +1,39 @@
+/** Where a run writes to, and whether it continues an earlier one. */
+#pragma once
+
+#include <submap_slam/output/output_directory.h>
+#include <submap_slam/pipeline/configuration.h>
+#include <submap_slam/pipeline/reporter.h>
+#include <submap_slam/rawlog/submap_log.h>
+
+#include <memory>
+#include <string>
+
+namespace submap_slam {
+
+constexpr const char* kSubmapFile = "submaps.rawlog";
+constexpr const char* kSpillFile = "submaps.spill";  ///< of the SubmapStore; gone when the run ends
+constexpr const char* kMetricsFile =
+    "metrics.json";  ///< written last: a folder that has it holds a finished run
+
+/** Throws ConfigError if the file of submaps is there and finished. */
+void refuseFinished(const std::string& submap_file);
+
+/** Opens the file that submaps are written to: anew, or where an unfinished run with the same log and
+ * parameters stopped. Throws ConfigError if there is a file that no such run made or if it is the log itself,
+ * InputError if it was another run.
+ * @param overwrite anew in any case */
+SubmapLogWriter openSubmapFile(const std::string& file, const std::string& log, const Configuration& config,
+                               bool overwrite, Reporter& reporter);
+
+/** The folder of results; one that holds an unfinished run is taken to finish it. */
+OutputDirectory openFolder(const std::string& folder, bool overwrite);
+
+/** Throws InputError unless the file begins with a submap. */
+void requireSubmaps(const std::string& file);
+
+/** The submaps of a file, up to the first damage if there is one (see RecoveredSubmaps::damage). Throws
+ * InputError if the file holds none. */
+RecoveredSubmaps readUsableSubmaps(const std::string& file, const std::shared_ptr<SubmapStore>& store);
+
+}  // namespace submap_slam

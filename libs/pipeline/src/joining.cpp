@@ -1,0 +1,109 @@
+#include <submap_slam/pipeline/joining.h>
+
+#include <fmt/format.h>
+#include <submap_slam/core/errors.h>
+#include <submap_slam/pipeline/stage_timer.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace submap_slam {
+namespace {
+
+void checkResult(const SubmapJoiner& joiner, const JoinedMap& joined, const GridSubmaps& submaps) {
+  if (joined.frames.size() != submaps.size())
+    throw PluginError(fmt::format("joiner {}: gave {} frames for {} submaps", joiner.name(),
+                                  joined.frames.size(), submaps.size()));
+  const auto hasItsNodes = [](const auto& poses, const auto& submap) {
+    return poses.size() == submap->nodes.size();
+  };
+  if (!joined.nodes.empty() &&
+      !std::equal(joined.nodes.begin(), joined.nodes.end(), submaps.begin(), submaps.end(), hasItsNodes))
+    throw PluginError(fmt::format("joiner {}: gave other nodes than the submaps have", joiner.name()));
+  for (const auto& frame : joined.frames) {
+    if (!std::isfinite(frame.mean.x()) || !std::isfinite(frame.mean.y()) || !std::isfinite(frame.mean.phi()))
+      throw PluginError(fmt::format("joiner {}: gave a frame that is not finite", joiner.name()));
+  }
+}
+
+void reportResult(const SubmapJoiner& joiner, const JoinedMap& joined, Reporter& reporter) {
+  const std::string outcome =
+      fmt::format("{}: {} ({}), objective {}, {} iterations", joiner.name(), toString(joined.status),
+                  joined.reason, joined.objective, joined.iterations.size());
+  if (joined.status == JoinStatus::kFailed) {
+    reporter.warning(outcome);
+  } else {
+    reporter.log(outcome);
+  }
+}
+
+/** Runs a joiner from where the one before it came to. */
+void run(const SubmapJoiner& joiner, IncrementalJoin& at_work, const GridSubmaps& submaps,
+         JoinOutcome& result, Reporter& reporter) {
+  const StageTimer timer;
+  const auto show = [&](double fraction) { reporter.progress("joining with " + joiner.name(), fraction); };
+  const auto step = [&](double fraction, const std::string&) {
+    show(fraction);
+    if (reporter.stopRequested()) result.stopped = true;
+    return !result.stopped;
+  };
+  ProgressCallback progress(step);
+  if (reporter.showsFrames()) progress = {step, [&reporter](const auto& frames) { reporter.frames(frames); }};
+  show(0);
+  result.map = at_work.join(submaps, result.map, progress);
+  show(1);
+  checkResult(joiner, result.map, submaps);
+  reportResult(joiner, result.map, reporter);
+  result.wall_s.push_back(timer.elapsed().wall_s);
+}
+
+/** Makes the map that a joiner left over. */
+void fuse(const GridSubmaps& submaps, double map_resolution, JoinOutcome& result) {
+  const StageTimer timer;
+  JoinedMap& joined = result.map;
+  if (joined.map.observedCells() == 0) joined.map = fuseEvidence(submaps, joined.frames, map_resolution);
+  result.wall_s.push_back(timer.elapsed().wall_s);
+}
+
+}  // namespace
+
+Joining::Joining(JoinerChain joiners, double map_resolution)
+    : joiners_(std::move(joiners)), map_resolution_(map_resolution) {
+  begin();
+}
+
+void Joining::begin() {
+  at_work_.clear();
+  for (const auto& joiner : joiners_) at_work_.push_back(joiner->incremental());
+}
+
+JoinOutcome Joining::join(const GridSubmaps& submaps, Reporter& reporter,
+                          const std::vector<Constraint>& by_hand) {
+  try {
+    return goOn(submaps, reporter, by_hand);
+  } catch (...) {
+    begin();
+    throw;
+  }
+}
+
+JoinOutcome Joining::goOn(const GridSubmaps& submaps, Reporter& reporter,
+                          const std::vector<Constraint>& by_hand) {
+  JoinOutcome result{chainSubmaps(submaps), false, {}};
+  auto& constraints = result.map.constraints;
+  constraints.insert(constraints.end(), by_hand.begin(), by_hand.end());
+  for (std::size_t k = 0; k < joiners_.size(); ++k)
+    run(*joiners_[k], *at_work_[k], submaps, result, reporter);
+  fuse(submaps, map_resolution_, result);
+  return result;
+}
+
+JoinOutcome Joining::joinAgain(const GridSubmaps& submaps, JoinedMap initial, Reporter& reporter) const {
+  JoinOutcome result{std::move(initial), false, {}};
+  if (!joiners_.empty()) run(*joiners_.back(), *joiners_.back()->incremental(), submaps, result, reporter);
+  fuse(submaps, map_resolution_, result);
+  return result;
+}
+
+}  // namespace submap_slam

@@ -1,0 +1,82 @@
+#include <submap_slam/pipeline/metrics.h>
+
+#include <fmt/format.h>
+#include <submap_slam/core/version.h>
+
+namespace submap_slam {
+
+void addLogMetrics(Metrics& metrics, const LogReport& report) {
+  std::size_t scans = 0;
+  for (const auto& [label, scanner] : report.scanners) scans += scanner.scans;
+  metrics["scans"] = scans;
+  metrics["frames"] = report.frames;
+  metrics["odometry_path_m"] = report.path_length_m;
+}
+
+LoopCount countLoops(const std::vector<Constraint>& constraints) {
+  LoopCount count;
+  for (const auto& constraint : constraints)
+    if (constraint.inter) ++(constraint.accepted ? count.accepted : count.rejected);
+  return count;
+}
+
+void addJoinMetrics(Metrics& metrics, const GridSubmaps& submaps, const JoinedMap& joined) {
+  std::size_t key_nodes = 0, frames = 0;
+  for (const auto& submap : submaps) key_nodes += submap->keyNodes(), frames += submap->nodes.size();
+  const LoopCount loops = countLoops(joined.constraints);
+  metrics["frames"] = frames;
+  metrics["key_nodes"] = key_nodes;
+  metrics["submaps"] = submaps.size();
+  metrics["objective"] = joined.objective;
+  metrics["join_status"] = toString(joined.status);
+  metrics["join_reason"] = joined.reason;
+  metrics["join_iterations"] = joined.iterations.size();
+  metrics["constraints_accepted"] = loops.accepted;
+  metrics["constraints_rejected"] = loops.rejected;
+}
+
+void addProgressMetrics(Metrics& metrics, const std::vector<SubmapProgress>& progress) {
+  if (progress.empty()) return;
+  const MatchScores scores = overallScores(progress);
+  metrics["match_score_mean"] = scores.mean;
+  metrics["match_score_min"] = scores.min;
+  metrics["match_score_max"] = scores.max;
+  metrics["nodes_per_submap"] =
+      static_cast<double>(progress.back().nodes_sum) / static_cast<double>(progress.size());
+  constexpr std::size_t kStages = 5;  // as many as the paper needs
+  const auto shares = stageShares(progress, kStages);
+  for (std::size_t s = 0; s < shares.size(); ++s) metrics[fmt::format("stage_{}", s + 1)] = shares[s];
+}
+
+void addLandmarkMetrics(Metrics& metrics, const LandmarkSubmaps& submaps, const JoinedLandmarks& joined) {
+  metrics["submaps"] = submaps.size();
+  metrics["features"] = joined.associations.size();
+  metrics["landmarks"] = joined.landmarks.size();
+  metrics["objective"] = joined.objective;
+  metrics["join_status"] = toString(joined.status);
+  metrics["join_reason"] = joined.reason;
+  metrics["join_iterations"] = joined.iterations.size();
+  metrics["association"] = joined.association_known ? "known" : "unknown";
+  if (joined.association_known) return;
+  const AssociationErrors errors = compareWithIds(joined.associations);
+  metrics["association_wrong"] = errors.wrong;
+  metrics["association_missed"] = errors.missed;
+  metrics["features_dropped"] = errors.dropped;
+}
+
+void addRunMetrics(Metrics& metrics, uint64_t seed, const std::vector<std::string>& warnings,
+                   const StageTimer& timer) {
+  addTime(metrics, "", timer);
+  metrics["peak_memory_mb"] = peakMemoryMb();
+  metrics["seed"] = seed;
+  metrics["version"] = version();
+  metrics["warnings"] = warnings;
+}
+
+void addTime(Metrics& metrics, const std::string& prefix, const StageTimer& timer) {
+  const ElapsedTime elapsed = timer.elapsed();
+  metrics[prefix + "wall_s"] = elapsed.wall_s;
+  metrics[prefix + "cpu_s"] = elapsed.cpu_s;
+}
+
+}  // namespace submap_slam

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <submap_slam/viewer/viewer_scene.h>
+
+#include <string>
+
+namespace submap_slam {
+
+/** Renders a scene without any display into a PNG file. Throws OutputError if the file cannot be written or
+ * there is nothing to render with.
+ * @param width height pixels */
+void writePicture(const std::string& file, const mrpt::opengl::COpenGLScene& scene, const View& view,
+                  unsigned width, unsigned height);
+
+/** Makes the camera of a scene look straight down. */
+void lookFromAbove(mrpt::opengl::COpenGLScene& scene, const View& view);
+
+}  // namespace submap_slam
