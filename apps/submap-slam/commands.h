@@ -14,6 +14,7 @@ void addJoinCommand(CLI::App& app, int& exit_code);
 void addEvalCommand(CLI::App& app, int& exit_code);
 void addCheckCommand(CLI::App& app, int& exit_code);
 void addInfoCommand(CLI::App& app, int& exit_code);
+void addImportCommand(CLI::App& app, int& exit_code);
 void addSimulateCommand(CLI::App& app, int& exit_code);
 void addExperimentCommand(CLI::App& app, int& exit_code);
 void addParametersCommand(CLI::App& app, int& exit_code);

@@ -1,4 +1,4 @@
-#include "byte_source.h"
+#include <submap_slam/rawlog/byte_source.h>
 
 #include <fmt/format.h>
 #include <submap_slam/core/errors.h>

@@ -3,7 +3,7 @@
 #include <submap_slam/rawlog/landmark_log.h>
 #include <zlib.h>
 
-#include "byte_source.h"
+#include <submap_slam/rawlog/byte_source.h>
 #include "landmark_text.h"
 #include "object_stream.h"
 

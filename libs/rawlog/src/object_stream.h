@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "byte_source.h"
+#include <submap_slam/rawlog/byte_source.h>
 
 namespace submap_slam {
 
