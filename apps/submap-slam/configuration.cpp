@@ -124,6 +124,12 @@ std::shared_ptr<LandmarkJoiner> Configuration::landmarkJoiner() const {
   return joinerNamed<LandmarkJoiner>(joiners, "landmark_joiner", joining.landmark_joiner);
 }
 
+ReaderParams Configuration::logReader() const {
+  ReaderParams params = reader;
+  params.use_landmarks = false;
+  return params;
+}
+
 std::string Configuration::submapFingerprint() const {
   std::string text = version();
   for (std::size_t i = 0; i < submap_parameters_; ++i) {

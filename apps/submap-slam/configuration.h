@@ -49,6 +49,9 @@ class Configuration {
   /** The joiner named in [joining] landmark_joiner; errors as above. */
   std::shared_ptr<LandmarkJoiner> landmarkJoiner() const;
 
+  /** How a log is read for the maps that are to be made of it: grid maps need its scans alone. */
+  ReaderParams logReader() const;
+
   /** Fingerprint of everything that the submaps depend on besides the log: parameters, seed and version. */
   std::string submapFingerprint() const;
 

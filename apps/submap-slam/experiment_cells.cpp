@@ -137,9 +137,9 @@ void runCell(const Cell& cell, int threads) {
   std::vector<Frame> frames;
   if (cell.setting.baseline.empty()) {
     estimate = runPipeline(cell, *config, figures);
-    if (!cell.truth.empty()) frames = readFrames(cell.log, config->reader);
+    if (!cell.truth.empty()) frames = readFrames(cell.log, config->logReader());
   } else {
-    frames = readFrames(cell.log, config->reader);
+    frames = readFrames(cell.log, config->logReader());
     estimate = runBaseline(cell, *config, frames);
   }
   if (!cell.truth.empty()) {
