@@ -3,6 +3,7 @@
 #include <submap_slam/core/landmark_joiner.h>
 #include <submap_slam/core/parameters.h>
 #include <submap_slam/core/submap_joiner.h>
+#include <submap_slam/landmarks/landmark_mapper_params.h>
 #include <submap_slam/mapping/grid_mapper.h>
 #include <submap_slam/mapping/node_refinement.h>
 #include <submap_slam/mapping/stretch_splitter.h>
@@ -49,15 +50,14 @@ class Configuration {
   /** The joiner named in [joining] landmark_joiner; errors as above. */
   std::shared_ptr<LandmarkJoiner> landmarkJoiner() const;
 
-  /** How a log is read for the maps that are to be made of it: grid maps need its scans alone. */
-  ReaderParams logReader() const;
-
   /** Fingerprint of everything that the submaps depend on besides the log: parameters, seed and version. */
   std::string submapFingerprint() const;
 
   ReaderParams reader;
   StretchParams stretches;
+  std::string maps = "auto";  ///< [mapping] maps, see mapForms()
   GridMapperParams mapper;
+  LandmarkMapperParams landmark_mapper;
   uint64_t seed = 1;
   JoiningParams joining;
   NodeRefinementParams node_refinement;

@@ -19,6 +19,7 @@
 
 #include "cell_scores.h"
 #include "child_processes.h"
+#include "map_forms.h"
 #include "pipeline.h"
 #include "results.h"
 #include "simulation_files.h"
@@ -137,9 +138,9 @@ void runCell(const Cell& cell, int threads) {
   std::vector<Frame> frames;
   if (cell.setting.baseline.empty()) {
     estimate = runPipeline(cell, *config, figures);
-    if (!cell.truth.empty()) frames = readFrames(cell.log, config->logReader());
+    if (!cell.truth.empty()) frames = readFrames(cell.log, readerParams(*config, mapForms(cell.log, *config)));
   } else {
-    frames = readFrames(cell.log, config->logReader());
+    frames = readFrames(cell.log, readerParams(*config, mapForms(cell.log, *config)));
     estimate = runBaseline(cell, *config, frames);
   }
   if (!cell.truth.empty()) {

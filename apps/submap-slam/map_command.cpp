@@ -4,6 +4,7 @@
 
 #include "commands.h"
 #include "configuration.h"
+#include "landmark_pipeline.h"
 #include "pipeline.h"
 #include "summary.h"
 
@@ -24,7 +25,8 @@ int runMap(MapOptions& options) {
   Reporter reporter(options.run.quiet);
 
   const RunSummary summary = mapRawlog(log, options.folder, options.run.overwrite, *config, reporter, edits);
-  reporter.note(mapSummary(summary, options.folder));
+  const bool landmarks_alone = summary.metrics.contains("landmarks");
+  reporter.note((landmarks_alone ? landmarkSummary : mapSummary)(summary, options.folder));
   return exitCodeOf(summary);
 }
 

@@ -2,18 +2,13 @@
 #pragma once
 
 #include <submap_slam/core/edits.h>
-#include <submap_slam/core/local_mapper.h>
-#include <submap_slam/output/output_directory.h>
-#include <submap_slam/rawlog/submap_log.h>
 
 #include <cstddef>
-#include <functional>
 #include <string>
 
 #include "configuration.h"
 #include "metrics.h"
 #include "reporter.h"
-#include "stretch_source.h"
 
 namespace submap_slam {
 
@@ -27,8 +22,9 @@ struct RunSummary {
   bool failed = false;             ///< landmark submaps could not be joined; what is written is not joined
 };
 
-/** Maps a rawlog: reads frames, cuts them into stretches, builds their submaps, joins them, writes all
- * results to a folder.
+/** Maps a rawlog: reads frames, cuts them into stretches, builds their submaps in the forms that [mapping]
+ * maps names, joins each form, writes all results to a folder. Where there are both, those of landmarks have
+ * names that begin with `landmark_`, and metrics.json says how far the two paths are apart.
  *
  * A run that was stopped or killed is continued when it is started again; its results have the same bytes as
  * those of a run that never stopped, also for any number of threads (metrics.json, which holds times,
@@ -39,23 +35,13 @@ struct RunSummary {
 RunSummary mapRawlog(const std::string& log, const std::string& folder, bool overwrite,
                      const Configuration& config, Reporter& reporter, const Edits& edits = {});
 
-/** The first half of mapRawlog: submaps of a rawlog into a file. */
+/** The first half of mapRawlog: submaps of a rawlog into a file; with both forms, those of landmarks into one
+ * beside it (landmarkFileBeside). */
 RunSummary buildRawlog(const std::string& log, const std::string& submap_file, bool overwrite,
                        const Configuration& config, Reporter& reporter);
 
 /** The second half of mapRawlog: from a file of submaps to all results. */
 RunSummary joinFile(const std::string& submap_file, const std::string& folder, bool overwrite,
                     const Configuration& config, Reporter& reporter, const Edits& edits = {});
-
-/** Called in log order, when the submaps of a stretch are on disk, with the share of the log that was read up
- * to its end. */
-using StretchDone = std::function<void(double)>;
-
-/** Builds the submaps of all stretches that `writer` does not have yet, in parallel; each is on disk before
- * the progress goes on. Memory does not grow with the log. After a stop signal no stretch is begun any more;
- * returns false if it left stretches out.
- * @param on_disk may be empty; the file does not change while it runs, but stretches are built meanwhile */
-bool buildSubmaps(StretchSource& source, const LocalMapper& mapper, SubmapLogWriter& writer,
-                  Reporter& reporter, const StretchDone& on_disk = {});
 
 }  // namespace submap_slam

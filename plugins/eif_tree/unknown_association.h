@@ -33,7 +33,7 @@ struct UnknownAssociation {
  * @return empty if an information matrix was not positive definite */
 std::optional<UnknownAssociation> associateByPosition(const LandmarkSubmaps& submaps,
                                                       const AssociationOptions& options,
-                                                      const SequentialOptions& joining,
+                                                      const GaussNewtonOptions& gauss_newton,
                                                       const std::function<bool(double)>& progress);
 
 }  // namespace submap_slam::landmark_joining

@@ -61,8 +61,9 @@ class LandmarkFilter {
 /** The filter that `method` names. @param seed of its random stream */
 std::unique_ptr<LandmarkFilter> makeLandmarkFilter(const LandmarkMapperParams& params, uint64_t seed);
 
-/** Measurements in the order of known and unknown ids: those with an id that the scan has twice contradict
- * each other and are left out, as those that are not finite. */
+/** The measurements of a scan with their noise. Left out are those that are not finite or not in front of the
+ * sensor, and those with an id that the scan has twice, as they contradict each other.
+ * @param measurements_so_far of the submap, is raised by those of the scan */
 MeasuredScan usableMeasurements(const LandmarkScan& scan, const LandmarkMapperParams& params,
                                 uint32_t& measurements_so_far);
 

@@ -16,11 +16,7 @@ void writeLandmarks(const std::string& file, const std::vector<JoinedLandmark>& 
 void writeAssociations(const std::string& file, const std::vector<FeatureAssociation>& associations);
 
 /** Writes an mrpt::opengl::COpenGLScene (`.3Dscene`): landmarks and submap frames with 3-sigma ellipses, and
- * the line through the frames. */
-void writeLandmarkScene(const std::string& file, const JoinedLandmarks& joined);
-
-/** The end pose of each submap with its stamp; where a submap has none, the positions of all in the
- * sequence stand for seconds. */
-Trajectory endPoses(const LandmarkSubmaps& submaps, const JoinedLandmarks& joined);
+ * the path. */
+void writeLandmarkScene(const std::string& file, const JoinedLandmarks& joined, const Trajectory& path);
 
 }  // namespace submap_slam
