@@ -58,10 +58,6 @@ BENCHMARK_CAPTURE(join, ekf, Method::kDenseFilter)
     ->Range(16, 256)
     ->Unit(benchmark::kMillisecond)
     ->Complexity();
-BENCHMARK(oneSubmapMore)
-    ->RangeMultiplier(4)
-    ->Range(16, 1024)
-    ->Unit(benchmark::kMillisecond)
-    ->Complexity();
+BENCHMARK(oneSubmapMore)->RangeMultiplier(4)->Range(16, 1024)->Unit(benchmark::kMillisecond)->Complexity();
 
 }  // namespace

@@ -138,7 +138,8 @@ void runCell(const Cell& cell, int threads) {
   std::vector<Frame> frames;
   if (cell.setting.baseline.empty()) {
     estimate = runPipeline(cell, *config, figures);
-    if (!cell.truth.empty()) frames = readFrames(cell.log, readerParams(*config, mapForms(cell.log, *config)));
+    if (!cell.truth.empty())
+      frames = readFrames(cell.log, readerParams(*config, mapForms(cell.log, *config)));
   } else {
     frames = readFrames(cell.log, readerParams(*config, mapForms(cell.log, *config)));
     estimate = runBaseline(cell, *config, frames);

@@ -72,15 +72,14 @@ void writeLandmarkResults(const OutputDirectory& out, const std::string& prefix,
 void checkConsistency(const LandmarkSubmaps& submaps, const JoinedLandmarks& joined, Reporter& reporter) {
   double observed = 0;
   for (const auto& submap : submaps) observed += static_cast<double>(submap->dimension());
-  const double freedom =
-      observed - static_cast<double>(3 * submaps.size() + 2 * joined.landmarks.size());
+  const double freedom = observed - static_cast<double>(3 * submaps.size() + 2 * joined.landmarks.size());
   constexpr double kUsual = 3;  // covariances of filters are often too small by as much
   const double expected = kUsual * (freedom + 5 * std::sqrt(2 * freedom));
   if (joined.status == JoinStatus::kFailed || freedom <= 0 || joined.objective <= expected) return;
-  reporter.warning(fmt::format(
-      "the landmark submaps contradict each other: objective {:.4g} at {} degrees of freedom; {}",
-      joined.objective, freedom,
-      joined.association_known ? "ids may be wrong" : "landmarks may be matched wrongly"));
+  reporter.warning(
+      fmt::format("the landmark submaps contradict each other: objective {:.4g} at {} degrees of freedom; {}",
+                  joined.objective, freedom,
+                  joined.association_known ? "ids may be wrong" : "landmarks may be matched wrongly"));
 }
 
 void addPathDifference(const Trajectory& grid_path, const Trajectory& path, Metrics& metrics) {

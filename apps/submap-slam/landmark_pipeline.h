@@ -21,9 +21,10 @@ RunSummary joinLandmarkFile(const std::string& submap_file, const std::string& f
  * nothing beyond them are associated by position. */
 class LandmarkHalf {
  public:
-  /** @param beside_grids the run has grids too: files and figures of the landmarks get the prefix `landmark_` */
-  LandmarkHalf(const LandmarkJoiner& joiner, const OutputDirectory& out, bool beside_grids, double update_growth,
-               Reporter& reporter);
+  /** @param beside_grids the run has grids too: files and figures of the landmarks get the prefix `landmark_`
+   */
+  LandmarkHalf(const LandmarkJoiner& joiner, const OutputDirectory& out, bool beside_grids,
+               double update_growth, Reporter& reporter);
 
   /** To be called when the file of the run holds so many submaps: joins them where an update is due, and
    * replaces map.png, trajectory.tum and landmarks.csv; updates.csv gets a line. */

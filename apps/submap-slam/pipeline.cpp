@@ -46,7 +46,8 @@ void requireObservations(const EvidenceGrid& map) {
 }
 
 void requireFeatures(const LandmarkSubmaps& submaps) {
-  if (std::all_of(submaps.begin(), submaps.end(), [](const auto& submap) { return submap->features.empty(); }))
+  if (std::all_of(submaps.begin(), submaps.end(),
+                  [](const auto& submap) { return submap->features.empty(); }))
     throw InputError(
         "the map would be empty: no landmark was measured as often as [landmark_mapper] min_hits asks for");
 }
@@ -103,7 +104,8 @@ Trajectory joinAndWrite(const EditedSubmaps& submaps, Joining& joining, const Ou
   return trajectoryOf(shown, joined);
 }
 
-/** The grids of a run that maps a log: joined while they are built, if the user wants that, and in the end. */
+/** The grids of a run that maps a log: joined while they are built, if the user wants that, and in the end.
+ */
 class GridHalf {
  public:
   GridHalf(const OutputDirectory& out, Joining& joining, const Edits& edits, bool goes_on,
@@ -170,12 +172,13 @@ RunSummary mapRawlog(const std::string& log, const std::string& folder, bool ove
   if (forms.landmarks)
     landmarks.emplace(*landmark_joiner, out, forms.grids, config.joining.update_growth, reporter);
   StretchDone show;
-  if (config.joining.incremental) show = [&](double fraction_read) {
-    if (grids)
-      grids->updates().update(files.submapsDone(), fraction_read);
-    else
-      landmarks->update(files.submapsDone(), fraction_read);
-  };
+  if (config.joining.incremental)
+    show = [&](double fraction_read) {
+      if (grids)
+        grids->updates().update(files.submapsDone(), fraction_read);
+      else
+        landmarks->update(files.submapsDone(), fraction_read);
+    };
   summary.interrupted = !buildSubmaps(source, StretchMapper(config, forms), files, reporter, show);
   summary.submaps_in_map = grids ? grids->updates().submapsInMap() : landmarks->submapsInMap();
   addTime(summary.metrics, "build_", timer);

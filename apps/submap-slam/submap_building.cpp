@@ -38,7 +38,8 @@ StretchMapper::StretchMapper(const Configuration& config, const MapForms& forms)
 StretchSubmaps StretchMapper::map(const Stretch& stretch) const {
   StretchSubmaps out;
   if (grids_) out.grids = grids_->map(stretch);
-  if (landmarks_) out.landmarks = grids_ ? landmarks_->mapAlong(stretch, out.grids) : landmarks_->map(stretch);
+  if (landmarks_)
+    out.landmarks = grids_ ? landmarks_->mapAlong(stretch, out.grids) : landmarks_->map(stretch);
   return out;
 }
 

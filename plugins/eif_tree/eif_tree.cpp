@@ -74,7 +74,8 @@ void EifTree::describe(ParameterTable& table) {
   table.add("association", association_,
             "How features of different submaps are matched: by the ids that they have, or without looking at "
             "these by "
-            "position: nearest neighbours, or joint compatibility branch and bound. Submaps without ids are matched by "
+            "position: nearest neighbours, or joint compatibility branch and bound. Submaps without ids are "
+            "matched by "
             "the latter.",
             {"known", "nearest_neighbour", "jcbb"});
   table.add("match_gate", association_options_.match_gate, "", {0, 1e9},
@@ -108,8 +109,8 @@ JoiningOptions EifTree::joiningOptions() const {
 }
 
 bool EifTree::goesByIds(const LandmarkSubmaps& submaps) const {
-  return association_ == "known" && std::all_of(submaps.begin(), submaps.end(),
-                                                [](const auto& submap) { return submap->ids_known; });
+  return association_ == "known" &&
+         std::all_of(submaps.begin(), submaps.end(), [](const auto& submap) { return submap->ids_known; });
 }
 
 namespace {
@@ -127,8 +128,7 @@ JoinedLandmarks EifTree::join(const LandmarkSubmaps& submaps, const ProgressCall
 
 class EifTree::Incremental : public IncrementalLandmarkJoin {
  public:
-  explicit Incremental(const EifTree& joiner)
-      : joiner_(joiner), tree_(treeFor(joiner.joiningOptions())) {}
+  explicit Incremental(const EifTree& joiner) : joiner_(joiner), tree_(treeFor(joiner.joiningOptions())) {}
 
   JoinedLandmarks join(const LandmarkSubmaps& submaps, const ProgressCallback& progress) override {
     if (!joiner_.hasTree() || !joiner_.goesByIds(submaps)) return joiner_.join(submaps, progress);
@@ -157,9 +157,8 @@ JoinedLandmarks EifTree::joinUnknown(const LandmarkSubmaps& submaps,
   AssociationOptions options = association_options_;
   options.joint_search = association_ != "nearest_neighbour";
   constexpr double kAssociationShare = 0.95;  // of the time
-  auto found =
-      associateByPosition(submaps, options, options_.gauss_newton,
-                          [&](double share) { return progress(kAssociationShare * share); });
+  auto found = associateByPosition(submaps, options, options_.gauss_newton,
+                                   [&](double share) { return progress(kAssociationShare * share); });
   JoinedLandmarks joined;
   if (found) {
     joined =

@@ -37,8 +37,8 @@ struct Joining {
 Joining joinBy(const JoiningOptions& options, const JointProblem& problem,
                const std::function<bool(double)>& progress);
 
-/** Joins by a tree that goes on from the call before; see JoiningTree for `ids`. The method must be one with a
- * tree. */
+/** Joins by a tree that goes on from the call before; see JoiningTree for `ids`. The method must be one with
+ * a tree. */
 Joining joinByTree(JoiningTree& tree, const std::vector<uint32_t>& ids, const JoiningOptions& options,
                    const JointProblem& problem, const std::function<bool(double)>& progress);
 

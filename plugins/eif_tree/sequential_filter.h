@@ -8,7 +8,7 @@
 namespace submap_slam::landmark_joining {
 
 struct SequentialOptions {
-  bool relinearise = true;          ///< false: each submap stays linearised where it was fused (SLSJF)
+  bool relinearise = true;  ///< false: each submap stays linearised where it was fused (SLSJF)
   double relinearise_above_m = 0.01, relinearise_above_rad = 0.01;  ///< when an estimate changes by more
   GaussNewtonOptions gauss_newton;
 };

@@ -16,8 +16,8 @@ class JoiningTree::Work {
       : options_(options), whole_(whole), ids_(ids), progress_(progress), local_(whole.landmark_count) {
     const auto added = static_cast<double>(whole.submaps() - joined_before);
     // Each of about log₂ K levels counts alike, and the last joins as one more.
-    expected_ = added * std::log2(static_cast<double>(whole.submaps()) + 1) +
-                static_cast<double>(whole.submaps());
+    expected_ =
+        added * std::log2(static_cast<double>(whole.submaps()) + 1) + static_cast<double>(whole.submaps());
   }
 
   Part leaf(std::size_t k) const;

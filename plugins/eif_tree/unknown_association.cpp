@@ -143,8 +143,7 @@ std::optional<UnknownAssociation> associateByPosition(const LandmarkSubmaps& sub
   InformationForm form(result.associated.problem);
   const auto joined = minimise(result.associated.problem, form, result.state, gauss_newton, {});
   if (joined.status == JoinStatus::kFailed) return std::nullopt;
-  if (options.merge)
-    mergeDuplicates(result.associated, result.state, options.match_gate, gauss_newton);
+  if (options.merge) mergeDuplicates(result.associated, result.state, options.match_gate, gauss_newton);
   return result;
 }
 

@@ -17,8 +17,8 @@ namespace {
 using namespace landmark_mapping;
 using Eigen::Index;
 
-/** All poses and features of a drive with known ids that fit odometry and measurements best: Gauss-Newton with
- * dense matrices over everything at once, in the same geometry but no filter. */
+/** All poses and features of a drive with known ids that fit odometry and measurements best: Gauss-Newton
+ * with dense matrices over everything at once, in the same geometry but no filter. */
 class Batch {
  public:
   explicit Batch(const Drive& drive) : frames_(drive.stretch.frames) {
@@ -29,8 +29,7 @@ class Batch {
       const LandmarkScan& scan = frames_[k].landmark_scans[0];
       for (const auto& m : scan.measurements)
         if (features_.count(*m.id) == 0)
-          features_[*m.id] =
-              locate(poses_.back(), toPose(scan.T_robot_sensor), {m.range, m.bearing}).feature;
+          features_[*m.id] = locate(poses_.back(), toPose(scan.T_robot_sensor), {m.range, m.bearing}).feature;
     }
     for (int i = 0; i < 10; ++i) step();
   }
@@ -45,9 +44,7 @@ class Batch {
   }
 
  private:
-  Pose increment(std::size_t k) const {
-    return toPose(*frames_[k].odometry - *frames_[k - 1].odometry);
-  }
+  Pose increment(std::size_t k) const { return toPose(*frames_[k].odometry - *frames_[k - 1].odometry); }
   static Index poseRow(std::size_t k) { return 3 * (static_cast<Index>(k) - 1); }
   Index featureRow(uint32_t id) const {
     return poseRow(poses_.size()) + 2 * std::distance(features_.begin(), features_.find(id));

@@ -83,8 +83,8 @@ TEST(ToGaussian, DropsAFeatureThatTooMuchOfTheWeightLacks) {
 TEST(ToGaussian, LeavesOutFeaturesSeenTooSeldomUnlessTheirIdIsKnown) {
   Feature known = feature(7, 1, 1, 1, 1);
   known.known = true;
-  const auto estimate = gaussianOf(
-      {component(1, {0, 0, 0}, {feature(1, 5, 0, 1, 2), feature(2, 6, 0, 1, 3), known})}, true, 3);
+  const auto estimate =
+      gaussianOf({component(1, {0, 0, 0}, {feature(1, 5, 0, 1, 2), feature(2, 6, 0, 1, 3), known})}, true, 3);
   ASSERT_EQ(estimate.features.size(), 2u);
   EXPECT_EQ(estimate.features[0].id, 2u);
   EXPECT_EQ(estimate.features[1].id, 7u);

@@ -24,8 +24,8 @@ LandmarkScan measure(const DriveOptions& o, const Drive& drive, const TPose2D& r
     const TPoint2D p = sensor.inverseComposePoint(drive.landmarks[i]);
     const double range = std::hypot(p.x, p.y), bearing = std::atan2(p.y, p.x);
     if (range > kRange || std::abs(bearing) > kFieldOfView / 2) continue;
-    LandmarkMeasurement m{range + o.sigma_range * normal(random), bearing + o.sigma_bearing * normal(random),
-                          {}};
+    LandmarkMeasurement m{
+        range + o.sigma_range * normal(random), bearing + o.sigma_bearing * normal(random), {}};
     if (o.ids) m.id = static_cast<uint32_t>(i + 1);
     scan.measurements.push_back(m);
   }

@@ -18,8 +18,7 @@ using namespace landmark_mapping;
 /** When the filter itself closes a submap. */
 class ClosingRules {
  public:
-  ClosingRules(const LandmarkClosingParams& params, const LandmarkSensorParams& sensor)
-      : params_(params), sensor_(sensor) {}
+  explicit ClosingRules(const LandmarkClosingParams& params) : params_(params) {}
 
   void move(const MotionStep& step) { distance_ += step.increment.head<2>().norm(); }
 
@@ -43,8 +42,7 @@ class ClosingRules {
 
  private:
   LandmarkClosingParams params_;
-  LandmarkSensorParams sensor_;
-  double sigma_range_ = sensor_.sigma_range, sigma_bearing_ = sensor_.sigma_bearing;
+  double sigma_range_ = 0.1, sigma_bearing_ = 0.02;  // until the sensor has seen something (m, rad)
   double distance_ = 0;
   int depleted_ = 0;
 };
@@ -60,7 +58,7 @@ LandmarkEstimate track(const std::vector<Frame>& frames, const LandmarkMapperPar
                        bool rules_apply, Span& span) {
   const auto filter = makeLandmarkFilter(params, streamSeed(seed, frames[span.first].index));
   OdometrySteps steps(params.motion);
-  ClosingRules rules(params.closing, params.sensor);
+  ClosingRules rules(params.closing);
   uint32_t measurements = 0;
   bool close = false;
   for (std::size_t i = span.first; i <= span.last; ++i) {

@@ -16,11 +16,12 @@ void describe(ParameterTable& table, LandmarkMotionParams& p) {
 }
 
 void describe(ParameterTable& table, LandmarkSensorParams& p) {
-  table.add("sigma_range", p.sigma_range, "m", kPositive,
-            "Standard deviation of a measured range, unless the log says it");
-  table.add("sigma_range_per_m", p.sigma_range_per_m, "m/m", kNonNegative, "… for each metre of range");
-  table.add("sigma_bearing", p.sigma_bearing, "rad", kPositive,
-            "Standard deviation of a measured bearing, unless the log says it");
+  table.add("sigma_range", p.sigma_range, "m", kNonNegative,
+            "Standard deviation of a measured range; 0: what the log says, or 0.1 m + 1 % of the range");
+  table.add("sigma_range_per_m", p.sigma_range_per_m, "m/m", kNonNegative,
+            "… for each metre of range, on top of a sigma_range that is not 0");
+  table.add("sigma_bearing", p.sigma_bearing, "rad", kNonNegative,
+            "Standard deviation of a measured bearing; 0: what the log says, or 1 degree");
 }
 
 void describe(ParameterTable& table, LandmarkAssociationParams& p) {
@@ -43,8 +44,9 @@ void describe(ParameterTable& table, LandmarkParticleParams& p) {
             "Particles are drawn anew when the effective number falls below this share");
   table.add("evidence_seen", p.seen, "", kNonNegative,
             "Log-odds that a measurement adds to the evidence for its feature");
-  table.add("evidence_missed", p.missed, "", kNonNegative,
-            "Log-odds that a feature loses where the sensor looks at it and does not see it; below 0 it goes");
+  table.add(
+      "evidence_missed", p.missed, "", kNonNegative,
+      "Log-odds that a feature loses where the sensor looks at it and does not see it; below 0 it goes");
 }
 
 void describe(ParameterTable& table, LandmarkClosingParams& p) {

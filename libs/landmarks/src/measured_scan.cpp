@@ -9,10 +9,14 @@
 namespace submap_slam::landmark_mapping {
 namespace {
 
+/** Of a sensor that nobody says it of: m, m per m of range, rad. */
+constexpr double kUsualRange = 0.1, kUsualRangePerM = 0.01, kUsualBearing = M_PI / 180;
+
 Eigen::Matrix2d noiseOf(const LandmarkScan& scan, double range, const LandmarkSensorParams& params) {
-  const double along =
-      scan.sigma_range > 0 ? scan.sigma_range : params.sigma_range + params.sigma_range_per_m * range;
-  const double across = scan.sigma_bearing > 0 ? scan.sigma_bearing : params.sigma_bearing;
+  double along = scan.sigma_range > 0 ? scan.sigma_range : kUsualRange + kUsualRangePerM * range;
+  if (params.sigma_range > 0) along = params.sigma_range + params.sigma_range_per_m * range;
+  double across = scan.sigma_bearing > 0 ? scan.sigma_bearing : kUsualBearing;
+  if (params.sigma_bearing > 0) across = params.sigma_bearing;
   return Eigen::Vector2d(along * along, across * across).asDiagonal();
 }
 

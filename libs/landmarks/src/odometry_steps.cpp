@@ -28,8 +28,8 @@ MotionStep OdometrySteps::between(const Frame& before, const Frame& now) {
   if (!before.odometry || !now.odometry) return {last_, diagonal(kBlindSigmaXy, kBlindSigmaPhi)};
   last_ = toPose(*now.odometry - *before.odometry);
   last_[2] = wrapped(last_[2]);
-  return {last_, now.motion_covariance ? Eigen::Matrix3d(now.motion_covariance->asEigen())
-                                       : covarianceOf(last_)};
+  return {last_,
+          now.motion_covariance ? Eigen::Matrix3d(now.motion_covariance->asEigen()) : covarianceOf(last_)};
 }
 
 std::vector<Frame> framesAlong(const Stretch& stretch, std::size_t first, const GridSubmap& grid) {

@@ -123,9 +123,8 @@ std::vector<Origin> RbpfFilter::associate(const Particle& particle, const Measur
         if (feature.known && feature.id == *measurement.known_id) pairings.push_back({m, f, 0});
         continue;
       }
-      if ((feature.mean - located).squaredNorm() >
-          reach2(value.z[0], value.noise, particle.covariance, feature.covariance.trace(),
-                 association_.new_gate))
+      if ((feature.mean - located).squaredNorm() > reach2(value.z[0], value.noise, particle.covariance,
+                                                          feature.covariance.trace(), association_.new_gate))
         continue;
       const Predicted p = predictMeasurement(particle.pose, scan.T_robot_sensor, feature.mean);
       const Eigen::Matrix2d s =
@@ -222,8 +221,9 @@ void RbpfFilter::addNew(Particle& particle, const MeasuredScan& scan,
     feature.id = measurement.known_id.value_or(measurement.index);
     feature.known = measurement.known_id.has_value();
     feature.mean = located.feature;
-    feature.covariance = located.by_pose * particle.covariance * located.by_pose.transpose() +
-                         located.by_measurement * measurement.value.noise * located.by_measurement.transpose();
+    feature.covariance =
+        located.by_pose * particle.covariance * located.by_pose.transpose() +
+        located.by_measurement * measurement.value.noise * located.by_measurement.transpose();
     feature.evidence = params_.seen;
     particle.features.insert(feature);
   }
@@ -262,9 +262,8 @@ void RbpfFilter::resample() {
 }
 
 const RbpfFilter::Particle& RbpfFilter::best() const {
-  return *std::max_element(particles_.begin(), particles_.end(), [](const Particle& a, const Particle& b) {
-    return a.log_weight < b.log_weight;
-  });
+  return *std::max_element(particles_.begin(), particles_.end(),
+                           [](const Particle& a, const Particle& b) { return a.log_weight < b.log_weight; });
 }
 
 Eigen::Matrix3d RbpfFilter::poseCovariance() const {

@@ -11,8 +11,8 @@
 
 namespace submap_slam::landmark_mapping {
 
-/** Rao-Blackwellized particle filter (Montemerlo, Thrun, FastSLAM 1 and 2): particles are paths, and given its
- * path a particle has a small Kalman filter for each feature.
+/** Rao-Blackwellized particle filter (Montemerlo, Thrun, FastSLAM 1 and 2): particles are paths, and given
+ * its path a particle has a small Kalman filter for each feature.
  *
  * Between scans a particle holds a Gaussian of the pose; it is sampled when there are measurements: before
  * them (FastSLAM 1), or from its product with their likelihood (FastSLAM 2), so that nothing is lost where

@@ -13,8 +13,8 @@ class IncrementalLandmarkJoin {
  public:
   virtual ~IncrementalLandmarkJoin() = default;
 
-  /** Joins what there is by now. Parameters and result are those of LandmarkJoiner::join, to the same bits, but
-   * what calls before found need not be found again.
+  /** Joins what there is by now. Parameters and result are those of LandmarkJoiner::join, to the same bits,
+   * but what calls before found need not be found again.
    * @param submaps those of the call before, and any number behind them */
   virtual JoinedLandmarks join(const LandmarkSubmaps& submaps, const ProgressCallback& progress) = 0;
 };

@@ -15,11 +15,12 @@ struct LandmarkMotionParams {
   double sigma_phi_per_rad = 0.05;  ///< rad per rad
 };
 
-/** Noise of a landmark sensor that does not say it. */
+/** Noise of the landmark sensor; 0: what the log says of it, or 0.1 m + 1 % of the range and 1° if it says
+ * nothing. */
 struct LandmarkSensorParams {
-  double sigma_range = 0.1;         ///< m
-  double sigma_range_per_m = 0.01;  ///< m per m of range, on top
-  double sigma_bearing = 0.0175;    ///< rad
+  double sigma_range = 0;        ///< m
+  double sigma_range_per_m = 0;  ///< m per m of range, on top of sigma_range
+  double sigma_bearing = 0;      ///< rad
 };
 
 /** Which measurement is of which feature. */
@@ -34,7 +35,7 @@ struct LandmarkAssociationParams {
 struct LandmarkParticleParams {
   std::string proposal = "fastslam2";
   int particles = 60;
-  double resample_below = 0.5;  ///< share of N_eff
+  double resample_below = 0.5;      ///< share of N_eff
   double seen = 1.0, missed = 0.5;  ///< evidence for and against a feature, log-odds
 };
 

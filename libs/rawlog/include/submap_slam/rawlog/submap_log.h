@@ -104,7 +104,8 @@ class SubmapLogWriter {
   SubmapLogWriter(SubmapLogWriter&&) noexcept;
   SubmapLogWriter& operator=(SubmapLogWriter&&) noexcept;
 
-  /** Appends the submaps of the next stretch, in order; the list may be empty. A file has submaps of one form.
+  /** Appends the submaps of the next stretch, in order; the list may be empty. A file has submaps of one
+   * form.
    */
   void appendStretch(const GridSubmaps& submaps);
   void appendLandmarkStretch(const LandmarkSubmaps& submaps);
