@@ -85,7 +85,7 @@ void EifTree::describe(ParameterTable& table) {
             "is left out.");
   table.add(
       "search_margin", association_options_.search_margin_m, "m", {0, 1e6},
-      "Landmarks so far outside of a submap are looked at too, besides the uncertainty of where it starts.");
+      "Landmarks so far from a feature are looked at, besides the uncertainty of where its submap starts.");
   table.add("merge", association_options_.merge, "Merge landmarks that turn out to be one in the end.");
 }
 

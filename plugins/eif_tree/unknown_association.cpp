@@ -97,12 +97,12 @@ class SequentialAssociation {
 std::vector<Decision> SequentialAssociation::decide(const LandmarkSubmap& submap) {
   std::vector<Decision> decisions(submap.features.size());
   if (filter_.form() == nullptr || submap.features.empty()) return decisions;
-  const Prediction prediction =
-      predictLandmarks(*filter_.form(), filter_.state(), submap.radius() + options_.search_margin_m);
   const auto rows = 2 * static_cast<Eigen::Index>(submap.features.size());
   Eigen::VectorXd z(rows);
   for (std::size_t i = 0; i < submap.features.size(); ++i)
     z.segment<2>(2 * static_cast<Eigen::Index>(i)) << submap.features[i].x, submap.features[i].y;
+  const Prediction prediction =
+      predictLandmarks(*filter_.form(), filter_.state(), z, options_.search_margin_m);
   const Eigen::MatrixXd q = submap.covariance.asEigen().bottomRightCorner(rows, rows);
   const Comparison comparison = compare(prediction, z, q, options_.match_gate);
 

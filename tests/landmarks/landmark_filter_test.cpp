@@ -5,6 +5,7 @@
 #include <submap_slam/landmarks/landmark_mapper.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 #include <map>

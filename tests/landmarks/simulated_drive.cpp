@@ -53,6 +53,7 @@ Drive simulateDrive(const DriveOptions& o) {
     frame.stamp = mrpt::Clock::fromDouble(1000 + 0.2 * k);
     frame.odometry = odometry;
     mrpt::math::CMatrixDouble33 covariance;
+    covariance.setZero();
     if (k > 0 && o.step_m > 0)
       covariance.asEigen().diagonal() << o.sigma_xy * o.sigma_xy, o.sigma_xy * o.sigma_xy,
           o.sigma_phi * o.sigma_phi;

@@ -111,9 +111,10 @@ void EkfFilter::update(const MeasuredScan& scan,
   }
   const Eigen::LLT<MatrixXd> llt(s);
   mean_ += p_ht * llt.solve(v);
-  // P Hᵀ S⁻¹ H P = W Wᵀ with W = P Hᵀ L⁻ᵀ
-  const MatrixXd w = llt.matrixL().solve(p_ht.transpose()).transpose();
-  covariance_.selfadjointView<Eigen::Lower>().rankUpdate(w, -1);
+  // P Hᵀ S⁻¹ H P = Wᵀ W with W = L⁻¹ H P
+  MatrixXd w = p_ht.transpose();
+  llt.matrixL().solveInPlace(w);
+  covariance_.selfadjointView<Eigen::Lower>().rankUpdate(w.transpose(), -1);
   covariance_.triangularView<Eigen::StrictlyUpper>() = covariance_.transpose();
 }
 

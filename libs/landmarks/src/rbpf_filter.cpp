@@ -162,7 +162,8 @@ void RbpfFilter::samplePose(Particle& particle) {
   const Eigen::LDLT<Eigen::Matrix3d> ldlt(particle.covariance);
   const Eigen::Vector3d root = ldlt.vectorD().cwiseMax(0).cwiseSqrt();
   const Eigen::Vector3d correlated = ldlt.matrixL() * root.cwiseProduct(standard);
-  particle.pose += ldlt.transpositionsP().transpose() * correlated;
+  const Eigen::Vector3d offset = ldlt.transpositionsP().transpose() * correlated;
+  particle.pose += offset;
   particle.covariance.setZero();
 }
 

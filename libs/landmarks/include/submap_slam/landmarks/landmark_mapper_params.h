@@ -48,7 +48,7 @@ struct LandmarkClosingParams {
 };
 
 struct LandmarkMapperParams {
-  std::string method = "rbpf";  ///< or "ekf"
+  std::string method = "ekf";  ///< or "rbpf"
   bool single_map = false;
   double max_distance = 30;  ///< m of odometry
   LandmarkMotionParams motion;
