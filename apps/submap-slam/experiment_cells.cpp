@@ -48,7 +48,7 @@ struct Cell {
 SimulationFiles simulationFiles(const fs::path& folder, const ExperimentData& data, uint64_t seed) {
   const Scenario scenario = loadScenario(data.world, "", data.simulation);
   const std::string hash = textHash(version() + scenarioIni(scenario));
-  return SimulationFiles((folder / "data" / fmt::format("{}-{}-{}", data.world, hash, seed)).string());
+  return {(folder / "data" / fmt::format("{}-{}-{}", data.world, hash, seed)).string(), scenario};
 }
 
 std::vector<ChildTask> simulationTasks(const Experiment& experiment, const fs::path& folder) {

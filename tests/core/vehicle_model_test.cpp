@@ -86,9 +86,9 @@ TEST(VehicleModel, MotionJacobiansAreTheDerivatives) {
 
 TEST(VehicleModel, DrivesACircle) {
   TPose2D pose(0, 0, 0);
-  for (int k = 0; k < 1000; ++k) pose = moved(pose, {1, 0, 0.5}, M_PI / 500);  // radius 2 m, once around
+  for (int k = 0; k < 1000; ++k) pose = moved(pose, {1, 0, 0.5}, M_PI / 250);  // radius 2 m, once around
   EXPECT_LT(std::hypot(pose.x, pose.y), 1e-9);
-  for (int k = 0; k < 500; ++k) pose = moved(pose, {1, 0, 0.5}, M_PI / 500);
+  for (int k = 0; k < 500; ++k) pose = moved(pose, {1, 0, 0.5}, M_PI / 250);
   EXPECT_NEAR(pose.y, 4, 1e-4);
   EXPECT_NEAR(moved({0, 0, M_PI / 2}, {0, 1, 0}, 2).x, -2, 1e-12);
 }

@@ -129,17 +129,44 @@ TEST(LandmarkScan, BrokenMeasurementsAreLeftOutAndCounted) {
   EXPECT_THAT(log.report.asText(), HasSubstr("6 measurements are NaN"));
 }
 
-TEST(LandmarkScan, OfARepeatedIdTheFirstCounts) {
-  const ReadLog log(LogBuilder().add(treesAt(0, {{4, 0, 0, 3}, {9, 1, 0, 3}, {5, 0, 0, 4}, {6, 0}, {7, 0}})));
-  const auto& measurements = log.frames.at(0).landmark_scans.at(0).measurements;
-  ASSERT_EQ(measurements.size(), 4u);  // unknown ids repeat nothing
-  EXPECT_NEAR(measurements[0].range, 4, 1e-12);
-  EXPECT_EQ(measurements[1].id, 4u);
+TEST(LandmarkScan, IdsAreCounted) {
+  const ReadLog log(
+      LogBuilder().add(treesAt(0, {{4, 0, 0, 3}, {5, 0, 0, 4}, {6, 0}})).add(treesAt(1, {{4, 0, 0, 3}})));
   const auto& counts = log.report.landmark_sensors.at("TREES");
-  EXPECT_EQ(counts.repeated_ids, 1u);
-  EXPECT_EQ(counts.with_id, 2u);
+  EXPECT_EQ(counts.with_id, 3u);
   EXPECT_THAT(counts.ids, ElementsAre(3u, 4u));
-  EXPECT_THAT(log.report.asText(), AllOf(HasSubstr("have already"), HasSubstr("the others have none")));
+  EXPECT_THAT(log.report.asText(), HasSubstr("the others have none"));
+}
+
+TEST(LandmarkScan, AnIdTwiceInOneObservationIsDamage) {
+  TempFolder temp;
+  LogBuilder log;
+  log.add(treesAt(0, {{4, 0, 0, 1}})).add(treesAt(1, {{4, 0, 0, 0x1234567}, {5, 0, 0, 0x1234568}}));
+  std::string bytes = log.bytes();  // MRPT would not write it
+  bytes.at(bytes.find("\x68\x45\x23\x01")) = '\x67';
+  const LogReport report = checkLog(temp.write("a.rawlog", bytes));
+  EXPECT_EQ(report.frames, 1u);
+  ASSERT_TRUE(report.damage);
+  EXPECT_THAT(report.damage->text, AllOf(HasSubstr("entry 1"), HasSubstr("because it has the landmark id 19088743 twice")));
+}
+
+TEST(LandmarkScan, AbsurdCountsAreRefusedBeforeMemoryIsAllocated) {
+  TempFolder temp;
+  auto own = treesAt(0, {{4, 0, 0, 2}});
+  own.validCovariances = true;
+  own.sensedData[0].covariance.setIdentity();
+  for (const auto& observation : {treesAt(0, {{4, 0, 0, 2}}), own}) {
+    const auto bytes = LogBuilder().add(observation).bytes();
+    const auto label = bytes.find(std::string("\x05\0\0\0TREES", 9));
+    const auto landmarks = bytes.find(std::string("\x01\0\0\0\0\0\x80\x40", 8));  // 1, then 4 m
+    ASSERT_NE(label, std::string::npos);
+    ASSERT_NE(landmarks, std::string::npos);
+    for (const auto at : {label, landmarks}) {
+      auto absurd = bytes;
+      absurd[at + 3] = '\x7f';
+      EXPECT_THAT(checkLog(temp.write("a.rawlog", absurd)).damage.value().text, HasSubstr("makes no sense"));
+    }
+  }
 }
 
 TEST(LandmarkScan, ProjectsPitchAndTiltedSensors) {

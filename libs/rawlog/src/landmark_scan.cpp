@@ -3,7 +3,6 @@
 #include <mrpt/math/wrap2pi.h>
 
 #include <cmath>
-#include <set>
 
 #include "scan_check.h"
 
@@ -57,19 +56,16 @@ LandmarkScan toLandmarkScan(const CObservationBearingRange& observation, double 
   const bool own = observation.validCovariances;  // each measurement has a covariance of its own
   scan.sigma_range = own ? commonSigma(observation, 0) : knownOrZero(observation.sensor_std_range);
   scan.sigma_bearing = own ? commonSigma(observation, 1) : knownOrZero(observation.sensor_std_yaw);
-  std::set<uint32_t> ids;
   for (const auto& sensed : observation.sensedData) {
     if (!isWhole(sensed)) {
       ++counts.broken;
       continue;
     }
     const LandmarkMeasurement measurement = project(sensed, pose);
-    if (!(measurement.range >= min_range)) {
-      ++counts.near;
-    } else if (measurement.id && !ids.insert(*measurement.id).second) {
-      ++counts.repeated_ids;
-    } else {
+    if (measurement.range >= min_range) {
       scan.measurements.push_back(measurement);
+    } else {
+      ++counts.near;
     }
   }
   return scan;

@@ -9,8 +9,8 @@ namespace submap_slam {
 /** Whether the pose and the limits of the sensor make sense. */
 bool isUsable(const mrpt::obs::CObservationBearingRange& observation);
 
-/** The landmarks of a usable observation, projected to the plane of the robot. Measurements that are broken,
- * nearer than `min_range` (m), or repeat an id are left out and counted. */
+/** The landmarks of a usable observation, projected to the plane of the robot. Measurements that are broken
+ * or nearer than `min_range` (m) are left out and counted. */
 LandmarkScan toLandmarkScan(const mrpt::obs::CObservationBearingRange& observation, double min_range,
                             LandmarkSensorReport& counts);
 

@@ -145,10 +145,6 @@ void assessLandmarks(const std::string& label, const LandmarkSensorReport& s, Fi
   add.add(s.near > 0, Severity::kInfo,
           "Landmarks '{}': {} measurements are nearer than [reader] min_range; they are left out.", label,
           s.near);
-  add.add(s.repeated_ids > 0, Severity::kWarning,
-          "Landmarks '{}': {} measurements have an id that their observation has already; only the first of "
-          "each counts.",
-          label, s.repeated_ids);
   add.add(s.observations > 0 && s.measurements == 0, Severity::kWarning,
           "Landmarks '{}': no observation has any usable measurement.", label);
   add.add(s.with_id > 0 && s.with_id < s.measurements, Severity::kInfo,

@@ -67,9 +67,8 @@ struct LandmarkSensorReport {
   mrpt::math::TPose2D sensor_pose;  ///< T_robot_sensor, by the first observation (m, rad)
 
   // measurements that were left out, of everything that was read
-  uint64_t broken = 0;        ///< NaN, infinite or not positive
-  uint64_t near = 0;          ///< nearer than `min_range`
-  uint64_t repeated_ids = 0;  ///< of a landmark that the same observation has already
+  uint64_t broken = 0;  ///< NaN, infinite or not positive
+  uint64_t near = 0;    ///< nearer than `min_range`
 };
 
 /** What a log holds and what is remarkable about it. Counts of frames, scans, beams, landmarks and odometry

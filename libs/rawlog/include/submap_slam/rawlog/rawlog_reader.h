@@ -67,11 +67,11 @@ void describe(ParameterTable& table, ReaderParams& params);
  * π) is not tilted. All of it is counted in the report.
  *
  * **Landmarks** (CObservationBearingRange). Measurements are projected to the plane of the robot by the full
- * sensor pose and the pitch. Left out and counted are those with a range or an angle that is NaN, infinite
- * or, for ranges, not positive; those nearer than `min_range`; and those with an id that the same
- * observation has already (the first one counts). Negative ids mean "not known". Observations without any
- * usable measurement stay: that nothing was seen is knowledge too. Where measurements bring covariances of
- * their own, the sensor gets the root mean square of their standard deviations.
+ * sensor pose and the pitch. Left out and counted are those with a range or an angle that is NaN or infinite,
+ * those with a range that is not positive or below `min_range`. Negative ids mean "not known". Observations
+ * without any usable measurement stay: that nothing was seen is knowledge too. Where measurements bring
+ * covariances of their own, the sensor gets the root mean square of their standard deviations. Observations
+ * that have an id twice cannot be read by MRPT, so that the log counts as damaged there.
  */
 class RawlogReader {
  public:
