@@ -37,6 +37,7 @@ void describeSubmapParameters(ParameterTable& table, Configuration& config) {
             {"auto", "grid", "landmarks", "grid, landmarks"});
   describe(table, config.stretches);
   describe(table, config.mapper);
+  describe(table, config.detector);
   describe(table, config.landmark_mapper);
   table.section("run", "The run as a whole");
   table.add("seed", config.seed, "Seed of all random streams; equal seeds give equal results");

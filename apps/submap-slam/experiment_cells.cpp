@@ -15,10 +15,12 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 
 #include "cell_scores.h"
 #include "child_processes.h"
+#include "landmark_scores.h"
 #include "map_forms.h"
 #include "pipeline.h"
 #include "results.h"
@@ -37,7 +39,7 @@ struct Cell {
   const ExperimentSetting& setting;
   uint64_t seed;
   fs::path folder;
-  std::string log, truth;  ///< files
+  std::string log, truth, landmarks;  ///< files
 
   std::string name() const { return fmt::format("{}, {}, seed {}", data.name, setting.name, seed); }
 };
@@ -72,7 +74,8 @@ std::vector<ChildTask> simulationTasks(const Experiment& experiment, const fs::p
 
 std::unique_ptr<Configuration> configurationOf(const Cell& cell) {
   ConfigurationOptions options;
-  options.settings = cell.setting.settings;
+  options.settings = cell.data.settings;
+  options.settings.insert(options.settings.end(), cell.setting.settings.begin(), cell.setting.settings.end());
   options.seed = cell.seed;
   return loadConfiguration(options);
 }
@@ -82,15 +85,17 @@ std::string fingerprint(const Cell& cell) {
   std::ostringstream text;
   text << version() << '\n' << cell.setting.baseline << '\n';
   configurationOf(cell)->table.writeIni(text);
-  for (const auto& file : {cell.log, cell.truth, cell.data.relations})
+  const auto& antenna = cell.data.antenna;
+  text << antenna.x << ' ' << antenna.y << '\n';
+  for (const auto& file : {cell.log, cell.truth, cell.data.relations, cell.landmarks, cell.data.gps})
     text << fs::path(file).filename().string() << ' ' << (fs::exists(file) ? fs::file_size(file) : 0) << '\n';
   return textHash(text.str());
 }
 
-/** The poses and the map that are to be judged. */
+/** The poses and the map that are to be judged; a result of landmarks alone has no grid map. */
 struct Estimate {
   TimedTrajectory trajectory;
-  mrpt::maps::COccupancyGridMap2D map;
+  std::optional<mrpt::maps::COccupancyGridMap2D> map;
 };
 
 mrpt::maps::COccupancyGridMap2D readGridMap(const std::string& file) {
@@ -101,7 +106,7 @@ mrpt::maps::COccupancyGridMap2D readGridMap(const std::string& file) {
   return map;
 }
 
-Estimate runPipeline(const Cell& cell, const Configuration& config, Metrics& figures) {
+Estimate runPipeline(const Cell& cell, const Configuration& config, const MapForms& forms, Metrics& figures) {
   Reporter reporter(true);
   const RunSummary summary = mapRawlog(cell.log, cell.folder.string(), true, config, reporter);
   if (summary.interrupted) throw Interrupted();
@@ -109,7 +114,9 @@ Estimate runPipeline(const Cell& cell, const Configuration& config, Metrics& fig
   const double iterations = figures["join_iterations"].get<double>();
   if (iterations > 0) figures["iteration_s"] = figures["join_wall_s"].get<double>() / iterations;
   const OutputDirectory out(cell.folder, true);
-  return {readTum(out.file("trajectory.tum")), readGridMap(out.file("map.gridmap.gz"))};
+  Estimate estimate{readTum(out.file("trajectory.tum")), {}};
+  if (forms.grids) estimate.map = readGridMap(out.file("map.gridmap.gz"));
+  return estimate;
 }
 
 /** Poses from elsewhere, and the map that the scans make there. */
@@ -126,30 +133,41 @@ Estimate runBaseline(const Cell& cell, const Configuration& config, const std::v
     writeTum(out.file("trajectory.tum"), odometry);
     estimate.trajectory = TimedTrajectory(odometry);
   }
-  estimate.map = mapFromPoses(frames, estimate.trajectory, {}, config.mapper);
+  const auto has_scans = [](const Frame& frame) { return !frame.scans.empty(); };
+  if (std::any_of(frames.begin(), frames.end(), has_scans))
+    estimate.map = mapFromPoses(frames, estimate.trajectory, {}, config.mapper);
   return estimate;
+}
+
+void addScores(Metrics& figures, const Cell& cell, const Configuration& config, const Estimate& estimate,
+               const std::vector<Frame>& frames, bool landmarks) {
+  const TimedTrajectory& path = estimate.trajectory;
+  if (!cell.truth.empty()) {
+    const TimedTrajectory truth = readTum(cell.truth);
+    addPoseScores(figures, path, truth);
+    if (estimate.map) addMapScores(figures, *estimate.map, path, truth, frames, config.mapper);
+    if (landmarks)
+      addLandmarkScores(figures, OutputDirectory(cell.folder, true), path, truth, cell.landmarks);
+  }
+  if (!cell.data.relations.empty()) addRelationScores(figures, path, cell.data.relations);
+  if (!cell.data.gps.empty()) addGpsScores(figures, path, cell.data.gps, cell.data.antenna);
 }
 
 void runCell(const Cell& cell, int threads) {
   const auto config = configurationOf(cell);
   const auto limit = limitThreads(threads);
+  const MapForms forms = mapForms(cell.log, *config);
+  const bool pipeline = cell.setting.baseline.empty();
   Metrics figures;
   Estimate estimate;
   std::vector<Frame> frames;
-  if (cell.setting.baseline.empty()) {
-    estimate = runPipeline(cell, *config, figures);
-    if (!cell.truth.empty())
-      frames = readFrames(cell.log, readerParams(*config, mapForms(cell.log, *config)));
-  } else {
-    frames = readFrames(cell.log, readerParams(*config, mapForms(cell.log, *config)));
+  if (!pipeline || (forms.grids && !cell.truth.empty()))
+    frames = readFrames(cell.log, readerParams(*config, forms));
+  if (pipeline)
+    estimate = runPipeline(cell, *config, forms, figures);
+  else
     estimate = runBaseline(cell, *config, frames);
-  }
-  if (!cell.truth.empty()) {
-    const TimedTrajectory truth = readTum(cell.truth);
-    addPoseScores(figures, estimate.trajectory, truth);
-    addMapScores(figures, estimate.map, estimate.trajectory, truth, frames, config->mapper);
-  }
-  if (!cell.data.relations.empty()) addRelationScores(figures, estimate.trajectory, cell.data.relations);
+  addScores(figures, cell, *config, estimate, frames, pipeline && forms.landmarks);
 
   figures["version"] = version();
   figures["seed"] = cell.seed;
@@ -173,11 +191,13 @@ std::vector<Cell> cellsOf(const Experiment& experiment, const fs::path& folder) 
   for (const auto& data : experiment.data)
     for (const auto& setting : experiment.settings)
       for (const uint64_t seed : experiment.seeds) {
-        Cell cell{data, setting, seed, cellFolder(folder, data, setting, seed), data.log, data.truth};
+        Cell cell{data,     setting,    seed,          cellFolder(folder, data, setting, seed),
+                  data.log, data.truth, data.landmarks};
         if (!data.world.empty()) {
           const SimulationFiles files = simulationFiles(folder, data, seed);
           cell.log = files.log;
           cell.truth = files.truth;
+          cell.landmarks = files.landmarks;
         }
         cells.push_back(cell);
       }

@@ -150,6 +150,7 @@ void LandmarkHalf::finish(const LandmarkSubmaps& submaps, const Trajectory& grid
   const StageTimer write_timer;
   const Trajectory path = trajectoryOf(submaps, joined);
   writeLandmarkResults(out_, prefix_, joined, path);
+  writeFrames(out_.file("frames.csv"), submaps, joined);
   addTime(metrics, "write_", write_timer);
   for (const auto& [key, value] : metrics.items()) summary.metrics[prefix_ + key] = value;
   if (!grid_path.empty()) addPathDifference(grid_path, path, summary.metrics);

@@ -36,8 +36,15 @@ MapForms mapForms(const std::string& log, const Configuration& config) {
 
 ReaderParams readerParams(const Configuration& config, const MapForms& forms) {
   ReaderParams params = config.reader;
-  params.use_scans = forms.grids;
-  params.use_landmarks = forms.landmarks;
+  const bool detected = detectorParams(config, forms).enabled;
+  params.use_scans = forms.grids || detected;
+  params.use_landmarks = forms.landmarks && !detected;
+  return params;
+}
+
+PoleDetectorParams detectorParams(const Configuration& config, const MapForms& forms) {
+  PoleDetectorParams params = config.detector;
+  params.enabled = params.enabled && forms.landmarks;
   return params;
 }
 

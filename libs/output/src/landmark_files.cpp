@@ -73,6 +73,20 @@ void writeLandmarks(const std::string& file, const std::vector<JoinedLandmark>& 
   writeBytes(file, text);
 }
 
+void writeFrames(const std::string& file, const LandmarkSubmaps& submaps, const JoinedLandmarks& joined) {
+  std::string text = "stamp,x,y,phi,sxx,sxy,sxp,syy,syp,spp\n";
+  for (std::size_t k = 0; k < submaps.size(); ++k) {
+    const auto& mean = joined.frames[k + 1].mean;
+    const auto& cov = joined.frames[k + 1].cov;
+    const double stamp = submaps[k]->end_stamp == INVALID_TIMESTAMP
+                             ? static_cast<double>(k + 1)
+                             : mrpt::Clock::toDouble(submaps[k]->end_stamp);
+    text += fmt::format("{:.6f},{},{},{},{},{},{},{},{},{}\n", stamp, mean.x(), mean.y(), mean.phi(),
+                        cov(0, 0), cov(0, 1), cov(0, 2), cov(1, 1), cov(1, 2), cov(2, 2));
+  }
+  writeBytes(file, text);
+}
+
 void writeAssociations(const std::string& file, const std::vector<FeatureAssociation>& associations) {
   std::string text = "submap,feature,kind,landmark,distance2\n";
   for (const auto& a : associations) {
