@@ -21,13 +21,15 @@ std::string contentOf(const LogReport& report) {
 /** Which observations were left out because they are of no use, and why. */
 std::string leftOut(const LogReport& report) {
   std::string reasons;
-  const auto add = [&](uint64_t count, const char* reason) {
-    if (count > 0) reasons += fmt::format("{}{} {}", reasons.empty() ? "; left out: " : ", ", count, reason);
+  const auto add = [&](uint64_t scans, const char* reason) {
+    if (scans > 0) reasons += fmt::format("{}{} {}", reasons.empty() ? "; scans: " : ", ", scans, reason);
   };
-  add(report.skipped_scans_tilted, "scans tilted by more than 5 deg");
-  add(report.skipped_scans_bad, "scans with a senseless aperture, maximum range or sensor pose");
-  add(report.skipped_scans_empty, "scans without beams");
-  add(report.skipped_landmarks_bad, "landmark observations with a senseless sensor pose");
+  add(report.skipped_scans_tilted, "tilted by more than 5 deg");
+  add(report.skipped_scans_bad, "with a senseless aperture, maximum range or sensor pose");
+  add(report.skipped_scans_empty, "without beams");
+  if (report.skipped_landmarks_bad > 0)
+    reasons +=
+        fmt::format("; landmark observations: {} with a senseless sensor pose", report.skipped_landmarks_bad);
   return reasons;
 }
 

@@ -26,8 +26,9 @@ mrpt::math::TPose2D VelocityOdometry::add(mrpt::Clock::time_point stamp,
 
 std::optional<mrpt::math::CMatrixDouble33> VelocityOdometry::covariance(mrpt::Clock::time_point from,
                                                                         mrpt::Clock::time_point to) {
+  if (from >= to) return std::nullopt;
   while (readings_.size() > 1 && readings_[1].stamp <= from) readings_.pop_front();
-  if (from >= to || readings_.empty() || readings_.front().stamp > from) return std::nullopt;
+  if (readings_.empty() || readings_.front().stamp > from) return std::nullopt;
   UncertainMotion motion(params_);
   for (auto reading = readings_.begin(); reading != readings_.end() && reading->stamp < to; ++reading) {
     const auto next = std::next(reading);

@@ -38,7 +38,7 @@ double uniform(NormalGenerator& normal) {
   return std::exp(-(a * a + b * b) / 2);
 }
 
-TPose2D rounded(const TPose2D& pose) {
+TPose2D roundedPose(const TPose2D& pose) {
   return {rounded(pose.x, kOdometryStep), rounded(pose.y, kOdometryStep), rounded(pose.phi, kOdometryStep)};
 }
 
@@ -164,7 +164,7 @@ SimulatedLog simulateLandmarks(const std::vector<TrueLandmark>& landmarks, const
     const bool last = k + 1 == path.poses.size();
     const TPose2D step = last ? TPose2D(0, 0, 0) : path.poses[k + 1] - path.poses[k];
     log.velocities.push_back(
-        {stampOf(k, path.period), rounded(odometry), controls.measure(step, path.period)});
+        {stampOf(k, path.period), roundedPose(odometry), controls.measure(step, path.period)});
     const VelocityReading& reading = log.velocities.back();
     if (k % static_cast<std::size_t>(control_model.readings_per_scan) == 0) {
       Frame frame;
