@@ -6,6 +6,7 @@
 #include <submap_slam/eval/relations.h>
 #include <submap_slam/eval/trajectory_error.h>
 
+#include <cmath>
 #include <limits>
 
 namespace submap_slam {
@@ -64,6 +65,9 @@ void addPoseScores(Metrics& scores, const TimedTrajectory& estimate, const Timed
   scores["mae_rad"] = error.mae_rad;
   scores["rmse_m"] = error.rmse_m;
   scores["rmse_rad"] = error.rmse_rad;
+  const TPose2D end =
+      (pairs.front().reference + (TPose2D() - pairs.front().estimate)) + pairs.back().estimate;
+  scores["final_m"] = std::hypot(end.x - pairs.back().reference.x, end.y - pairs.back().reference.y);
   const TrajectoryError absolute = absoluteTrajectoryError(pairs);
   scores["ate_m"] = absolute.translation_m.rmse;
   scores["ate_deg"] = absolute.rotation_deg.rmse;

@@ -22,9 +22,10 @@ mrpt::maps::COccupancyGridMap2D mapFromPoses(const std::vector<Frame>& frames,
                                              const mrpt::math::TPose2D& T_map_w,
                                              const GridMapperParams& params);
 
-/** Adds mae_m, mae_rad, rmse_m, rmse_rad (first pose aligned); ate_m and ate_deg (RMSE after least squares
- * alignment), ape_mean_m, ape_rmse_m and ape_std_m of the same errors; rpe_mean_m, rpe_rmse_m, rpe_std_m and
- * rpe_rmse_deg, from one scan to the next. Throws InputError if the trajectories have no time in common. */
+/** Adds mae_m, mae_rad, rmse_m, rmse_rad and final_m, that of the last position (first pose aligned); ate_m
+ * and ate_deg (RMSE after least squares alignment), ape_mean_m, ape_rmse_m and ape_std_m of the same errors;
+ * rpe_mean_m, rpe_rmse_m, rpe_std_m and rpe_rmse_deg, from one scan to the next. Throws InputError if the
+ * trajectories have no time in common. */
 void addPoseScores(Metrics& scores, const TimedTrajectory& estimate, const TimedTrajectory& truth);
 
 /** Adds auc, precision, recall, accuracy and coverage of a map in the estimate's frame against the map from

@@ -7,6 +7,8 @@
 #include <submap_slam/pipeline/configuration.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -111,6 +113,20 @@ std::string existingFile(const std::string& name, const fs::path& folder) {
   return file.string();
 }
 
+double numberOf(const IniEntry& entry) {
+  double value = 0;
+  const char* const end = entry.value.data() + entry.value.size();
+  const auto [rest, error] = std::from_chars(entry.value.data(), end, value);
+  if (error != std::errc() || rest != end || !std::isfinite(value))
+    throw ConfigError(fmt::format("[{}] {} = {}: is no number", entry.section, entry.key, entry.value));
+  return value;
+}
+
+/** A parameter of the pipeline in [data NAME]. */
+bool isFact(const IniEntry& entry) {
+  return entry.key.find('.') != std::string::npos && !startsWith(entry.key, kSimulationPrefix);
+}
+
 void setData(ExperimentData& data, const IniEntry& entry, const fs::path& folder) {
   const std::string& key = entry.key;
   if (key == "world") {
@@ -121,11 +137,21 @@ void setData(ExperimentData& data, const IniEntry& entry, const fs::path& folder
     data.truth = existingFile(entry.value, folder);
   } else if (key == "relations") {
     data.relations = existingFile(entry.value, folder);
+  } else if (key == "landmarks") {
+    data.landmarks = existingFile(entry.value, folder);
+  } else if (key == "gps") {
+    data.gps = existingFile(entry.value, folder);
+  } else if (key == "antenna_x" || key == "antenna_y") {
+    (key.back() == 'x' ? data.antenna.x : data.antenna.y) = numberOf(entry);
   } else if (startsWith(key, kSimulationPrefix)) {
     data.simulation.push_back(assignmentOf(entry));
+  } else if (isFact(entry)) {
+    data.settings.push_back(assignmentOf(entry));
   } else {
-    throw ConfigError(fmt::format(
-        "unknown key [{}] {}; expected world, simulation.KEY, log, truth or relations", entry.section, key));
+    throw ConfigError(
+        fmt::format("unknown key [{}] {}; expected world, simulation.KEY, log, truth, relations, landmarks, "
+                    "gps, antenna_x, antenna_y or SECTION.KEY",
+                    entry.section, key));
   }
 }
 
@@ -137,6 +163,17 @@ void checkSimulation(const ExperimentFile& file, const std::vector<IniEntry>& ke
   for (const auto& entry : keys)
     if (startsWith(entry.key, kSimulationPrefix))
       file.at(entry, [&] { loadScenario(world, "", {assignmentOf(entry)}); });
+}
+
+/** Throws ConfigError or PluginError for what the pipeline would refuse. */
+void checkSettings(const ExperimentFile& file, const IniEntry& heading, const std::vector<IniEntry>& keys) {
+  ConfigurationOptions options;  // plugins first: they bring parameters themselves
+  for (const auto& entry : keys)
+    if (entry.key == "plugins.load") options.settings.push_back(assignmentOf(entry));
+  const auto config = loadConfiguration(options);
+  for (const auto& entry : keys)
+    if (entry.key != "baseline") file.at(entry, [&] { config->table.set(assignmentOf(entry)); });
+  file.at(heading, [&] { config->joinerChain(); });
 }
 
 ExperimentData readData(const ExperimentFile& file, const std::string& name, const fs::path& folder) {
@@ -152,6 +189,9 @@ ExperimentData readData(const ExperimentFile& file, const std::string& name, con
       throw ConfigError(fmt::format("[{}]: needs either a world or a log", section));
   });
   if (!data.world.empty()) checkSimulation(file, keys, data.world);
+  std::vector<IniEntry> facts;
+  std::copy_if(keys.begin(), keys.end(), std::back_inserter(facts), isFact);
+  checkSettings(file, heading, facts);
   return data;
 }
 
@@ -164,17 +204,6 @@ void setSetting(ExperimentSetting& setting, const IniEntry& entry) {
   if (!setting.baseline.empty() && setting.baseline != "odometry" && setting.baseline != "truth")
     throw ConfigError(
         fmt::format("[{}] baseline = '{}': expected odometry or truth", entry.section, setting.baseline));
-}
-
-/** Throws ConfigError or PluginError for what the pipeline would refuse. */
-void checkSettings(const ExperimentFile& file, const IniEntry& heading, const std::vector<IniEntry>& keys) {
-  ConfigurationOptions options;  // plugins first: they bring parameters themselves
-  for (const auto& entry : keys)
-    if (entry.key == "plugins.load") options.settings.push_back(assignmentOf(entry));
-  const auto config = loadConfiguration(options);
-  for (const auto& entry : keys)
-    if (entry.key != "baseline") file.at(entry, [&] { config->table.set(assignmentOf(entry)); });
-  file.at(heading, [&] { config->joinerChain(); });
 }
 
 ExperimentSetting readSetting(const ExperimentFile& file, const std::string& name) {
@@ -307,6 +336,16 @@ const std::vector<ExperimentColumn>& experimentColumns() {
       {"recall", "recall", 4},
       {"accuracy", "accuracy", 4},
       {"coverage", "coverage", 4},
+      {"final_m", "final position, m", 3},
+      {"ci_frames", "CI of poses", 3},
+      {"nees_frames", "NEES of poses", 3},
+      {"landmark_rmse_m", "landmarks RMSE, m", 3},
+      {"ci_landmarks", "CI of landmarks", 3},
+      {"nees_landmarks", "NEES of landmarks", 3},
+      {"landmarks", "landmarks", 1},
+      {"landmarks_compared", "landmarks compared", 1},
+      {"gps_rmse_m", "GPS RMSE, m", 3},
+      {"gps_median_m", "GPS median, m", 3},
       {"relations_m", "relations, m", 4},
       {"relations_deg", "relations, deg", 3},
       {"relations_rmse_m", "relations RMSE, m", 4},

@@ -1,6 +1,7 @@
 /** What an experiment is: data × settings × seeds, and the figures to tabulate. */
 #pragma once
 
+#include <mrpt/math/TPoint2D.h>
 #include <submap_slam/simulation/scenario.h>
 
 #include <cstdint>
@@ -15,6 +16,10 @@ struct ExperimentData {
   std::string world;                    ///< to simulate once for each seed; empty: a recording
   std::vector<std::string> simulation;  ///< "simulation.key=value", for a world
   std::string log, truth, relations;    ///< files of a recording; truth and relations may be empty
+  std::string landmarks;                ///< file with true landmarks; empty: none, or those of the world
+  std::string gps;                      ///< file with fixes, or empty
+  mrpt::math::TPoint2D antenna;         ///< of GPS, on the robot (m)
+  std::vector<std::string> settings;    ///< "section.key=value", facts that all settings start from
 };
 
 /** Section [setting NAME]: how the data are mapped. */

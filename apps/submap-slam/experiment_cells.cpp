@@ -18,12 +18,15 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <sstream>
 
 #include "cell_scores.h"
 #include "child_processes.h"
 #include "common_options.h"
+#include "landmark_scores.h"
+#include <submap_slam/pipeline/map_forms.h>
 #include "program_hash.h"
 #include "simulation_files.h"
 #include "stop_signal.h"
@@ -41,7 +44,7 @@ struct Cell {
   const ExperimentSetting& setting;
   uint64_t seed;
   fs::path folder;
-  std::string log, truth;  ///< files
+  std::string log, truth, landmarks;  ///< files
 
   std::string name() const { return fmt::format("{}, {}, seed {}", data.name, setting.name, seed); }
 };
@@ -54,8 +57,9 @@ std::string simulationText(const ExperimentData& data) {
 
 /** Named by all that they depend on, so that an older simulation is never taken for a new one. */
 SimulationFiles simulationFiles(const fs::path& folder, const ExperimentData& data, uint64_t seed) {
+  const Scenario scenario = loadScenario(data.world, "", data.simulation);
   const std::string hash = textHash(programHash({}) + simulationText(data));
-  return SimulationFiles((folder / "data" / fmt::format("{}-{}-{}", data.world, hash, seed)).string());
+  return {(folder / "data" / fmt::format("{}-{}-{}", data.world, hash, seed)).string(), scenario};
 }
 
 /** What simulates the logs of cells that do not exist yet, each once. */
@@ -77,7 +81,8 @@ std::vector<ChildTask> simulationTasks(const std::vector<Cell>& cells, const fs:
 
 std::unique_ptr<Configuration> configurationOf(const Cell& cell) {
   ConfigurationOptions options;
-  options.settings = cell.setting.settings;
+  options.settings = cell.data.settings;
+  options.settings.insert(options.settings.end(), cell.setting.settings.begin(), cell.setting.settings.end());
   options.seed = cell.seed;
   return loadConfiguration(options);
 }
@@ -89,7 +94,10 @@ std::string fingerprint(const Cell& cell) {
   text << version() << '\n' << cell.setting.baseline << '\n';
   configurationOf(cell)->table.writeIni(text);
   if (!cell.data.world.empty()) text << simulationText(cell.data);
-  for (const auto& file : {cell.data.log, cell.data.truth, cell.data.relations})
+  const auto& antenna = cell.data.antenna;
+  text << antenna.x << ' ' << antenna.y << '\n';
+  for (const auto& file :
+       {cell.data.log, cell.data.truth, cell.data.relations, cell.data.landmarks, cell.data.gps})
     if (!file.empty()) text << endsHash(file) << ' ' << fs::file_size(file) << '\n';
   return textHash(text.str());
 }
@@ -102,10 +110,10 @@ std::string buildOf(const Cell& cell) {
   return programHash(files);
 }
 
-/** The poses and the map that are to be judged. */
+/** The poses and the map that are to be judged; a result of landmarks alone has no grid map. */
 struct Estimate {
   TimedTrajectory trajectory;
-  mrpt::maps::COccupancyGridMap2D map;
+  std::optional<mrpt::maps::COccupancyGridMap2D> map;
 };
 
 mrpt::maps::COccupancyGridMap2D readGridMap(const std::string& file) {
@@ -116,7 +124,7 @@ mrpt::maps::COccupancyGridMap2D readGridMap(const std::string& file) {
   return map;
 }
 
-Estimate runPipeline(const Cell& cell, const Configuration& config, Metrics& figures) {
+Estimate runPipeline(const Cell& cell, const Configuration& config, const MapForms& forms, Metrics& figures) {
   TerminalReporter reporter(true);
   const RunSummary summary = mapRawlog(cell.log, cell.folder.string(), true, config, reporter);
   if (summary.interrupted) throw Interrupted();
@@ -124,7 +132,9 @@ Estimate runPipeline(const Cell& cell, const Configuration& config, Metrics& fig
   const double iterations = figures["join_iterations"].get<double>();
   if (iterations > 0) figures["iteration_s"] = figures["join_wall_s"].get<double>() / iterations;
   const OutputDirectory out(cell.folder, true);
-  return {readTum(out.file("trajectory.tum")), readGridMap(out.file("map.gridmap.gz"))};
+  Estimate estimate{readTum(out.file("trajectory.tum")), {}};
+  if (forms.grids) estimate.map = readGridMap(out.file("map.gridmap.gz"));
+  return estimate;
 }
 
 /** Poses from elsewhere, and the map that the scans make there. */
@@ -141,29 +151,41 @@ Estimate runBaseline(const Cell& cell, const Configuration& config, const std::v
     writeTum(out.file("trajectory.tum"), odometry);
     estimate.trajectory = TimedTrajectory(odometry);
   }
-  estimate.map = mapFromPoses(frames, estimate.trajectory, {}, config.mapper);
+  const auto has_scans = [](const Frame& frame) { return !frame.scans.empty(); };
+  if (std::any_of(frames.begin(), frames.end(), has_scans))
+    estimate.map = mapFromPoses(frames, estimate.trajectory, {}, config.mapper);
   return estimate;
+}
+
+void addScores(Metrics& figures, const Cell& cell, const Configuration& config, const Estimate& estimate,
+               const std::vector<Frame>& frames, bool landmarks) {
+  const TimedTrajectory& path = estimate.trajectory;
+  if (!cell.truth.empty()) {
+    const TimedTrajectory truth = readTum(cell.truth);
+    addPoseScores(figures, path, truth);
+    if (estimate.map) addMapScores(figures, *estimate.map, path, truth, frames, config.mapper);
+    if (landmarks)
+      addLandmarkScores(figures, OutputDirectory(cell.folder, true), path, truth, cell.landmarks);
+  }
+  if (!cell.data.relations.empty()) addRelationScores(figures, path, cell.data.relations);
+  if (!cell.data.gps.empty()) addGpsScores(figures, path, cell.data.gps, cell.data.antenna);
 }
 
 void runCell(const Cell& cell, int threads) {
   const auto config = configurationOf(cell);
   const auto limit = limitThreads(threads);
+  const MapForms forms = mapForms(cell.log, *config);
+  const bool pipeline = cell.setting.baseline.empty();
   Metrics figures;
   Estimate estimate;
   std::vector<Frame> frames;
-  if (cell.setting.baseline.empty()) {
-    estimate = runPipeline(cell, *config, figures);
-    if (!cell.truth.empty()) frames = readFrames(cell.log, config->reader);
-  } else {
-    frames = readFrames(cell.log, config->reader);
+  if (!pipeline || (forms.grids && !cell.truth.empty()))
+    frames = readFrames(cell.log, readerParams(*config, forms));
+  if (pipeline)
+    estimate = runPipeline(cell, *config, forms, figures);
+  else
     estimate = runBaseline(cell, *config, frames);
-  }
-  if (!cell.truth.empty()) {
-    const TimedTrajectory truth = readTum(cell.truth);
-    addPoseScores(figures, estimate.trajectory, truth);
-    addMapScores(figures, estimate.map, estimate.trajectory, truth, frames, config->mapper);
-  }
-  if (!cell.data.relations.empty()) addRelationScores(figures, estimate.trajectory, cell.data.relations);
+  addScores(figures, cell, *config, estimate, frames, pipeline && forms.landmarks);
 
   figures["version"] = version();
   figures["mrpt"] = mrpt::system::MRPT_getVersion();
@@ -190,11 +212,13 @@ std::vector<Cell> cellsOf(const Experiment& experiment, const fs::path& folder) 
   for (const auto& data : experiment.data)
     for (const auto& setting : experiment.settings)
       for (const uint64_t seed : experiment.seeds) {
-        Cell cell{data, setting, seed, cellFolder(folder, data, setting, seed), data.log, data.truth};
+        Cell cell{data,     setting,    seed,          cellFolder(folder, data, setting, seed),
+                  data.log, data.truth, data.landmarks};
         if (!data.world.empty()) {
           const SimulationFiles files = simulationFiles(folder, data, seed);
           cell.log = files.log;
           cell.truth = files.truth;
+          cell.landmarks = files.landmarks;
         }
         cells.push_back(cell);
       }

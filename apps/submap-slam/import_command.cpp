@@ -8,8 +8,8 @@
 #include <memory>
 
 #include "commands.h"
-#include "reporter.h"
 #include "stop_signal.h"
+#include "terminal_reporter.h"
 
 namespace submap_slam {
 namespace {
@@ -52,7 +52,7 @@ int runImport(const ImportCommandOptions& options) {
     if (fs::exists(options.input) && fs::equivalent(options.input, options.output))
       throw ConfigError(fmt::format("{}: is the input", options.output));
   }
-  Reporter reporter(options.quiet);
+  TerminalReporter reporter(options.quiet);
   const auto progress = [&](double share, const std::string& what) {
     reporter.progress(what, share);
     return !stopRequested();

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "commands.h"
+#include <submap_slam/pipeline/landmark_pipeline.h>
 #include "summary.h"
 #include "terminal_reporter.h"
 #include "viewer_process.h"
@@ -28,7 +29,8 @@ int runMap(MapOptions& options) {
   if (options.view) startViewer(options.folder);
 
   const RunSummary summary = mapRawlog(log, options.folder, options.run.overwrite, *config, reporter, edits);
-  reporter.note(mapSummary(summary, options.folder));
+  const bool landmarks_alone = summary.metrics.contains("landmarks");
+  reporter.note((landmarks_alone ? landmarkSummary : mapSummary)(summary, options.folder));
   return exitCodeOf(summary);
 }
 

@@ -11,7 +11,7 @@
 #include <iterator>
 #include <map>
 
-#include "installation.h"
+#include <submap_slam/pipeline/installation.h>
 
 namespace submap_slam {
 namespace fs = std::filesystem;

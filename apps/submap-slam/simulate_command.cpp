@@ -27,7 +27,7 @@ void refuseExisting(const SimulationFiles& files) {
 int runSimulate(const SimulateOptions& options) {
   const uint64_t seed = parseSeed(options.seed, "--seed");
   const Scenario scenario = loadScenario(options.world, options.ini_file, options.settings);
-  const SimulationFiles files(options.prefix);
+  const SimulationFiles files(options.prefix, scenario);
   if (!options.overwrite) refuseExisting(files);
   const RawlogForm form = options.actions ? RawlogForm::kActions : RawlogForm::kObservations;
   const std::size_t scans = writeSimulation(scenario, seed, form, files);
@@ -47,8 +47,10 @@ void addSimulateCommand(CLI::App& app, int& exit_code) {
       ->required()
       ->type_name("WORLD");
   command
-      ->add_option("-o,--output", options->prefix,
-                   "Writes PREFIX.rawlog, PREFIX.truth.tum, PREFIX.odometry.tum and PREFIX.ini")
+      ->add_option(
+          "-o,--output", options->prefix,
+          "Writes PREFIX.rawlog, PREFIX.truth.tum, PREFIX.odometry.tum and PREFIX.ini; of worlds with "
+          "landmarks also PREFIX.landmarks.csv")
       ->required()
       ->type_name("PREFIX");
   command->add_option("--seed", options->seed, "Seed of the noise")->capture_default_str()->type_name("N");
@@ -67,7 +69,7 @@ void addSimulateCommand(CLI::App& app, int& exit_code) {
       fmt::format("Worlds: {}\n"
                   "PREFIX.ini lists all keys of [simulation] with the values used.\n"
                   "Example: submap-slam simulate non_convex -o sim1 --seed 3",
-                  fmt::join(worldNames(), ", ")));
+                  fmt::join(scenarioNames(), ", ")));
   command->callback([options, &exit_code] { exit_code = runSimulate(*options); });
 }
 

@@ -8,11 +8,18 @@
 
 namespace submap_slam {
 
-SimulationFiles::SimulationFiles(const std::string& prefix)
+SimulationFiles::SimulationFiles(const std::string& prefix, const Scenario& scenario)
     : log(prefix + ".rawlog"),
       truth(prefix + ".truth.tum"),
       odometry(prefix + ".odometry.tum"),
-      ini(prefix + ".ini") {}
+      ini(prefix + ".ini"),
+      landmarks(scenario.hasLandmarks() ? prefix + ".landmarks.csv" : "") {}
+
+std::vector<std::string> SimulationFiles::all() const {
+  std::vector<std::string> files{log, truth, odometry, ini};
+  if (!landmarks.empty()) files.push_back(landmarks);
+  return files;
+}
 
 Scenario loadScenario(const std::string& world, const std::string& ini_file,
                       const std::vector<std::string>& settings) {
@@ -38,6 +45,7 @@ std::size_t writeSimulation(const Scenario& scenario, uint64_t seed, RawlogForm 
   writeText(files.ini, scenarioIni(scenario));
   writeTum(files.truth, log.truth);
   writeTum(files.odometry, odometryOf(log.frames));
+  if (!files.landmarks.empty()) writeTrueLandmarks(files.landmarks, log.landmarks);
   replaceFile(files.log, [&](const std::string& file) { writeRawlog(file, log, form); });
   return log.frames.size();
 }

@@ -10,14 +10,15 @@ namespace submap_slam {
 
 /** The files of a simulated log: one prefix, different endings. */
 struct SimulationFiles {
-  explicit SimulationFiles(const std::string& prefix);
+  SimulationFiles(const std::string& prefix, const Scenario& scenario);
 
-  std::string log;       ///< PREFIX.rawlog, written last: where it is, the others are complete
-  std::string truth;     ///< PREFIX.truth.tum, the true pose at each scan
-  std::string odometry;  ///< PREFIX.odometry.tum, the pose by odometry at each scan
-  std::string ini;       ///< PREFIX.ini, the effective [simulation]
+  std::string log;        ///< PREFIX.rawlog, written last: where it is, the others are complete
+  std::string truth;      ///< PREFIX.truth.tum, the true pose at each scan
+  std::string odometry;   ///< PREFIX.odometry.tum, the pose by odometry at each scan
+  std::string ini;        ///< PREFIX.ini, the effective [simulation]
+  std::string landmarks;  ///< PREFIX.landmarks.csv, true places (id,x,y); empty for a world without any
 
-  std::vector<std::string> all() const { return {log, truth, odometry, ini}; }
+  std::vector<std::string> all() const;
 };
 
 /** The scenario of a world with changes from an ini file (empty: none) and "section.key=value" settings.

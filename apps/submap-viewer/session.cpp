@@ -100,7 +100,8 @@ void Session::saveResults(const std::string& folder) {
   const OutputDirectory out(folder, false);
   Metrics metrics;
   addJoinMetrics(metrics, joined_submaps_, model_.joined());
-  writeJoined(out, joined_submaps_, model_.joined(), *config_, log_, metrics);
+  writeJoined(out, joined_submaps_, model_.joined(), metrics);
+  writeRunRecord(out, *config_, log_);
   writeJson(out.file(kMetricsFile), metrics);
   saveEdits(out.file("edits.txt"));
   message_ = "saved to " + folder;

@@ -4,6 +4,8 @@
 #include <mrpt/math/wrap2pi.h>
 #include <submap_slam/core/errors.h>
 
+#include <algorithm>
+
 #include "chaining.h"
 
 namespace submap_slam {
@@ -63,8 +65,7 @@ void EifTree::describe(ParameterTable& table) {
   table.add("steps_per_join", options_.steps_per_join, "", {1, 100},
             "Gauss-Newton steps after each join of the tree.");
   table.add("relinearise_above", options_.relinearise_above, "m or rad", {0, 1e9},
-            "sequential_iterated and association by position are relinearised over all submaps when a submap "
-            "changes an estimate by more.");
+            "sequential_iterated is relinearised over all submaps when one changes an estimate by more.");
   table.add("max_iterations", options_.gauss_newton.max_iterations, "", {1, 10000},
             "Limit of Gauss-Newton iterations over all submaps.");
   table.add("step_tolerance", options_.gauss_newton.max_step_m, "m", {0, 1},
@@ -73,7 +74,9 @@ void EifTree::describe(ParameterTable& table) {
   table.add("association", association_,
             "How features of different submaps are matched: by the ids that they have, or without looking at "
             "these by "
-            "position: nearest neighbours, or joint compatibility branch and bound.",
+            "position: nearest neighbours, or joint compatibility branch and bound. Submaps without ids are "
+            "matched by "
+            "the latter.",
             {"known", "nearest_neighbour", "jcbb"});
   table.add("match_gate", association_options_.match_gate, "", {0, 1e9},
             "Largest squared Mahalanobis distance of a match by position.");
@@ -82,7 +85,7 @@ void EifTree::describe(ParameterTable& table) {
             "is left out.");
   table.add(
       "search_margin", association_options_.search_margin_m, "m", {0, 1e6},
-      "Landmarks so far outside of a submap are looked at too, besides the uncertainty of where it starts.");
+      "Landmarks so far from a feature are looked at, besides the uncertainty of where its submap starts.");
   table.add("merge", association_options_.merge, "Merge landmarks that turn out to be one in the end.");
 }
 
@@ -105,9 +108,42 @@ JoiningOptions EifTree::joiningOptions() const {
   return options;
 }
 
+bool EifTree::goesByIds(const LandmarkSubmaps& submaps) const {
+  return association_ == "known" &&
+         std::all_of(submaps.begin(), submaps.end(), [](const auto& submap) { return submap->ids_known; });
+}
+
+namespace {
+
+/** Share of the work as joiners tell it to the program. */
+std::function<bool(double)> shown(const ProgressCallback& progress) {
+  return [&progress](double share) { return !progress || progress(share, "joining landmarks"); };
+}
+
+}  // namespace
+
 JoinedLandmarks EifTree::join(const LandmarkSubmaps& submaps, const ProgressCallback& progress) const {
-  const auto show = [&](double share) { return !progress || progress(share, "joining landmarks"); };
-  return association_ == "known" ? joinKnown(submaps, show) : joinUnknown(submaps, show);
+  return goesByIds(submaps) ? joinKnown(submaps, shown(progress)) : joinUnknown(submaps, shown(progress));
+}
+
+class EifTree::Incremental : public IncrementalLandmarkJoin {
+ public:
+  explicit Incremental(const EifTree& joiner) : joiner_(joiner), tree_(treeFor(joiner.joiningOptions())) {}
+
+  JoinedLandmarks join(const LandmarkSubmaps& submaps, const ProgressCallback& progress) override {
+    if (!joiner_.hasTree() || !joiner_.goesByIds(submaps)) return joiner_.join(submaps, progress);
+    const AssociatedProblem associated = associateByIds(submaps);
+    return resultOf(associated, joinByTree(tree_, associated.landmark_ids, joiner_.joiningOptions(),
+                                           associated.problem, shown(progress)));
+  }
+
+ private:
+  const EifTree& joiner_;
+  JoiningTree tree_;
+};
+
+std::unique_ptr<IncrementalLandmarkJoin> EifTree::incremental() const {
+  return std::make_unique<Incremental>(*this);
 }
 
 JoinedLandmarks EifTree::joinKnown(const LandmarkSubmaps& submaps,
@@ -119,11 +155,10 @@ JoinedLandmarks EifTree::joinKnown(const LandmarkSubmaps& submaps,
 JoinedLandmarks EifTree::joinUnknown(const LandmarkSubmaps& submaps,
                                      const std::function<bool(double)>& progress) const {
   AssociationOptions options = association_options_;
-  options.joint_search = association_ == "jcbb";
+  options.joint_search = association_ != "nearest_neighbour";
   constexpr double kAssociationShare = 0.95;  // of the time
-  auto found =
-      associateByPosition(submaps, options, {true, options_.relinearise_above, options_.gauss_newton},
-                          [&](double share) { return progress(kAssociationShare * share); });
+  auto found = associateByPosition(submaps, options, options_.gauss_newton,
+                                   [&](double share) { return progress(kAssociationShare * share); });
   JoinedLandmarks joined;
   if (found) {
     joined =

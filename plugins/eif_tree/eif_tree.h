@@ -27,7 +27,13 @@ class EifTree : public LandmarkJoiner {
 
   JoinedLandmarks join(const LandmarkSubmaps& submaps, const ProgressCallback& progress) const override;
 
+  /** The tree is updated as submaps come; the other methods, and association by position, begin anew. */
+  std::unique_ptr<IncrementalLandmarkJoin> incremental() const override;
+
  private:
+  class Incremental;
+  bool goesByIds(const LandmarkSubmaps& submaps) const;
+  bool hasTree() const { return method_ == "tree_gn" || method_ == "tree"; }
   landmark_joining::JoiningOptions joiningOptions() const;
   JoinedLandmarks joinKnown(const LandmarkSubmaps& submaps,
                             const std::function<bool(double)>& progress) const;

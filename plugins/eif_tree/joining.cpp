@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <numeric>
 #include <utility>
 
 #include "chaining.h"
 #include "dense_filter.h"
 #include "sequential_filter.h"
-#include "tree.h"
 
 namespace submap_slam::landmark_joining {
 namespace {
@@ -47,28 +47,10 @@ Progress between(const Progress& progress, double from, double to) {
   return [&progress, from, to](double share) { return !progress || progress(from + (to - from) * share); };
 }
 
-Joining byTree(const JoiningOptions& options, const JointProblem& problem, const Progress& progress) {
-  const bool then_gauss_newton = options.method == Method::kTreeThenGaussNewton;
-  constexpr double kTreeShare = 0.7;  // of the time
-  auto start = joinTree(problem, {options.steps_per_join, !then_gauss_newton},
-                        between(progress, 0, then_gauss_newton ? kTreeShare : 1));
-  if (!start) return failed(problem, kNotDefinite);
-  if (then_gauss_newton)
-    return joinFrom(std::move(start->state), problem, options.gauss_newton, between(progress, kTreeShare, 1));
-  InformationForm form(problem);
-  form.lineariseAll(start->state);
-  if (!form.factorize()) return failed(problem, kNotDefinite);
-  Estimate estimate{std::move(start->state), marginalCovariances(problem, form)};
-  if (start->stopped)
-    return joiningOf(problem, std::move(estimate), JoinStatus::kIterationLimit,
-                     "stopped before the tree was joined");
-  return joiningOf(problem, std::move(estimate), JoinStatus::kConverged, "the tree is joined");
-}
-
 Joining sequentially(const JoiningOptions& options, const JointProblem& problem, const Progress& progress) {
   SequentialOptions sequential;
   sequential.relinearise = options.method == Method::kSequentialIterated;
-  sequential.relinearise_above = options.relinearise_above;
+  sequential.relinearise_above_m = sequential.relinearise_above_rad = options.relinearise_above;
   sequential.gauss_newton = options.gauss_newton;
   SequentialFilter filter(sequential);
   // Landmarks are numbered as they come in the filter.
@@ -126,6 +108,28 @@ Joining joinFrom(JointState start, const JointProblem& problem, const GaussNewto
   return joining;
 }
 
+JoiningTree treeFor(const JoiningOptions& options) {
+  return JoiningTree({options.steps_per_join, options.method != Method::kTreeThenGaussNewton});
+}
+
+Joining joinByTree(JoiningTree& tree, const std::vector<uint32_t>& ids, const JoiningOptions& options,
+                   const JointProblem& problem, const Progress& progress) {
+  const bool then_gauss_newton = options.method == Method::kTreeThenGaussNewton;
+  constexpr double kTreeShare = 0.7;  // of the time
+  auto start = tree.join(problem, ids, between(progress, 0, then_gauss_newton ? kTreeShare : 1));
+  if (!start) return failed(problem, kNotDefinite);
+  if (then_gauss_newton)
+    return joinFrom(std::move(start->state), problem, options.gauss_newton, between(progress, kTreeShare, 1));
+  InformationForm form(problem);
+  form.lineariseAll(start->state);
+  if (!form.factorize()) return failed(problem, kNotDefinite);
+  Estimate estimate{std::move(start->state), marginalCovariances(problem, form)};
+  if (start->stopped)
+    return joiningOf(problem, std::move(estimate), JoinStatus::kIterationLimit,
+                     "stopped before the tree was joined");
+  return joiningOf(problem, std::move(estimate), JoinStatus::kConverged, "the tree is joined");
+}
+
 Joining joinBy(const JoiningOptions& options, const JointProblem& problem, const Progress& progress) {
   switch (options.method) {
     case Method::kSequential:
@@ -133,8 +137,12 @@ Joining joinBy(const JoiningOptions& options, const JointProblem& problem, const
       return sequentially(options, problem, progress);
     case Method::kDenseFilter:
       return densely(problem, progress);
-    default:
-      return byTree(options, problem, progress);
+    default: {
+      JoiningTree tree = treeFor(options);
+      std::vector<uint32_t> ids(problem.landmark_count);
+      std::iota(ids.begin(), ids.end(), 0U);
+      return joinByTree(tree, ids, options, problem, progress);
+    }
   }
 }
 

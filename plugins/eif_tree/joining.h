@@ -5,6 +5,7 @@
 
 #include "covariances.h"
 #include "gauss_newton.h"
+#include "tree.h"
 
 namespace submap_slam::landmark_joining {
 
@@ -35,6 +36,14 @@ struct Joining {
  * what was joined so far */
 Joining joinBy(const JoiningOptions& options, const JointProblem& problem,
                const std::function<bool(double)>& progress);
+
+/** Joins by a tree that goes on from the call before; see JoiningTree for `ids`. The method must be one with
+ * a tree. */
+Joining joinByTree(JoiningTree& tree, const std::vector<uint32_t>& ids, const JoiningOptions& options,
+                   const JointProblem& problem, const std::function<bool(double)>& progress);
+
+/** A tree for the options. */
+JoiningTree treeFor(const JoiningOptions& options);
 
 /** Gauss-Newton over all submaps from a given state. */
 Joining joinFrom(JointState start, const JointProblem& problem, const GaussNewtonOptions& options,

@@ -7,18 +7,42 @@
 
 namespace submap_slam::landmark_joining {
 
-Prediction predictLandmarks(InformationForm& form, const JointState& state, double radius_m) {
+namespace {
+
+/** A feature where the start pose puts it, and how far from there its landmark may be. */
+struct Disc {
+  Point centre;
+  double radius2 = 0;
+};
+
+std::vector<Disc> discsOf(const Pose& start, const Eigen::Matrix3d& c_start, const Eigen::VectorXd& z,
+                          double margin_m) {
+  constexpr double kSigmas = 4;
+  std::vector<Disc> discs;
+  for (Eigen::Index row = 0; row < z.size(); row += 2) {
+    const Point feature = z.segment<2>(row);
+    const double variance = c_start(0, 0) + c_start(1, 1) + feature.squaredNorm() * c_start(2, 2);
+    const double radius = margin_m + kSigmas * std::sqrt(variance);
+    discs.push_back({compose(start, feature), radius * radius});
+  }
+  return discs;
+}
+
+}  // namespace
+
+Prediction predictLandmarks(InformationForm& form, const JointState& state, const Eigen::VectorXd& z,
+                            double margin_m) {
   const std::size_t last = state.ends.size() - 1;
   const Pose& start = state.ends[last];
   const int pose_row = form.pattern().poseRow(last);
   std::vector<int> rows{pose_row, pose_row + 1, pose_row + 2};
-  const Eigen::MatrixXd c_start = covarianceOf(form, rows);
-  constexpr double kSigmas = 4;
-  const double reach =
-      radius_m + kSigmas * std::sqrt(c_start(0, 0) + c_start(1, 1) + radius_m * radius_m * c_start(2, 2));
+  const std::vector<Disc> discs = discsOf(start, covarianceOf(form, rows), z, margin_m);
   Prediction p;
   for (std::size_t m = 0; m < state.landmarks.size(); ++m) {
-    if ((state.landmarks[m] - start.head<2>()).norm() > reach) continue;
+    const auto near = [&](const Disc& disc) {
+      return (state.landmarks[m] - disc.centre).squaredNorm() <= disc.radius2;
+    };
+    if (std::none_of(discs.begin(), discs.end(), near)) continue;
     p.landmarks.push_back(static_cast<int>(m));
     rows.push_back(form.pattern().landmarkRow(m));
     rows.push_back(rows.back() + 1);

@@ -12,9 +12,11 @@ struct Prediction {
   Eigen::MatrixXd covariance;  ///< J C Jᵀ with C recovered for the start pose and these landmarks alone
 };
 
-/** Predicts the landmarks within `radius_m`, and as far beyond it as the start pose is uncertain. `form` must
- * be factorized. */
-Prediction predictLandmarks(InformationForm& form, const JointState& state, double radius_m);
+/** Predicts the landmarks that are within `margin_m` of one of the submap's features, and as far beyond as that
+ * feature is uncertain because the start pose is. `form` must be factorized.
+ * @param z features in the submap's frame, two rows for each */
+Prediction predictLandmarks(InformationForm& form, const JointState& state, const Eigen::VectorXd& z,
+                            double margin_m);
 
 /** Pairings of features with predicted landmarks within the gate, and for each feature the squared distance
  * of the nearest landmark (infinite if there is none).

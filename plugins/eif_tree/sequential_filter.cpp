@@ -39,7 +39,8 @@ bool SequentialFilter::fuse(const Observation& observation, const std::vector<in
   if (!solveFrozen()) return false;
   if (!options_.relinearise) return true;
   const Change change = changeBetween(predicted, state_);
-  if (std::max(change.metres, change.radians) <= options_.relinearise_above) return true;
+  if (change.metres <= options_.relinearise_above_m && change.radians <= options_.relinearise_above_rad)
+    return true;
   const auto result = minimise(problem_, *form_, state_, options_.gauss_newton, {});
   for (std::size_t k = 0; k < problem_.submaps(); ++k) freeze(k);
   return result.status != JoinStatus::kFailed;

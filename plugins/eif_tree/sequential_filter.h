@@ -8,8 +8,8 @@
 namespace submap_slam::landmark_joining {
 
 struct SequentialOptions {
-  bool relinearise = true;          ///< false: each submap stays linearised where it was fused (SLSJF)
-  double relinearise_above = 0.01;  ///< when an estimate changes by more (m, rad), over all submaps
+  bool relinearise = true;  ///< false: each submap stays linearised where it was fused (SLSJF)
+  double relinearise_above_m = 0.01, relinearise_above_rad = 0.01;  ///< when an estimate changes by more
   GaussNewtonOptions gauss_newton;
 };
 

@@ -1,36 +1,35 @@
 #include "tree.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "information_form.h"
 
 namespace submap_slam::landmark_joining {
-namespace {
 
-/** Estimate of the submaps [first, last) in the frame of the first one's start. */
-struct Part {
-  std::size_t first = 0, last = 0;
-  JointState state;
-  std::vector<int> landmarks;  ///< which landmarks of the whole problem the state's are, ascending
-};
-
-class TreeJoin {
+/** One call of JoiningTree::join. */
+class JoiningTree::Work {
  public:
-  TreeJoin(const JointProblem& whole, const TreeOptions& options, const std::function<bool(double)>& progress)
-      : whole_(whole), options_(options), progress_(progress), local_(whole.landmark_count) {}
+  Work(const TreeOptions& options, const JointProblem& whole, const std::vector<uint32_t>& ids,
+       const std::function<bool(double)>& progress, std::size_t joined_before)
+      : options_(options), whole_(whole), ids_(ids), progress_(progress), local_(whole.landmark_count) {
+    const auto added = static_cast<double>(whole.submaps() - joined_before);
+    // Each of about log₂ K levels counts alike, and the last joins as one more.
+    expected_ =
+        added * std::log2(static_cast<double>(whole.submaps()) + 1) + static_cast<double>(whole.submaps());
+  }
 
-  Part join(std::size_t first, std::size_t last) {
-    if (last - first == 1) return leaf(first);
-    const std::size_t middle = first + (last - first) / 2;
-    const Part left = join(first, middle), right = join(middle, last);
+  Part leaf(std::size_t k) const;
+
+  Part join(const Part& left, const Part& right, bool refined) {
     Part both = merge(left, right);
-    const bool is_root = last - first == whole_.submaps();
-    if (options_.refine_root || !is_root) {
+    if (refined) {
       stopped_ = stopped_ || !going_on_;
       if (going_on_ && !failed_) refine(both);
     }
-    joined_ += last - first;
-    going_on_ = going_on_ && (!progress_ || progress_(shareDone()));
+    joined_ += static_cast<double>(both.size());
+    going_on_ = going_on_ && (!progress_ || progress_(std::min(1.0, joined_ / expected_)));
     return both;
   }
 
@@ -38,27 +37,20 @@ class TreeJoin {
   bool stopped() const { return stopped_; }
 
  private:
-  Part leaf(std::size_t k) const;
-  Part merge(const Part& left, const Part& right) const;
+  static Part merge(const Part& left, const Part& right);
   void refine(Part& part);
   JointProblem problemOf(const Part& part);
 
-  /** Each of about log₂ K levels counts alike. */
-  double shareDone() const {
-    double levels = 0;
-    for (std::size_t n = 1; n < whole_.submaps(); n *= 2) ++levels;
-    return std::min(1.0, static_cast<double>(joined_) / (levels * static_cast<double>(whole_.submaps())));
-  }
-
-  const JointProblem& whole_;
   const TreeOptions& options_;
+  const JointProblem& whole_;
+  const std::vector<uint32_t>& ids_;
   const std::function<bool(double)>& progress_;
   std::vector<int> local_;  // index of each landmark in the part at work
-  std::size_t joined_ = 0;
+  double joined_ = 0, expected_ = 1;
   bool going_on_ = true, failed_ = false, stopped_ = false;
 };
 
-Part TreeJoin::leaf(std::size_t k) const {
+JoiningTree::Part JoiningTree::Work::leaf(std::size_t k) const {
   const Eigen::VectorXd& z = whole_.observations[k]->z;
   std::vector<std::pair<int, int>> order;  // landmark, row
   for (std::size_t i = 0; i < whole_.landmarks[k].size(); ++i)
@@ -68,13 +60,13 @@ Part TreeJoin::leaf(std::size_t k) const {
   part.first = k, part.last = k + 1;
   part.state.ends.push_back(z.head<3>());
   for (const auto& [landmark, row] : order) {
-    part.landmarks.push_back(landmark);
+    part.landmarks.push_back(ids_[static_cast<std::size_t>(landmark)]);
     part.state.landmarks.emplace_back(z.segment<2>(row));
   }
   return part;
 }
 
-Part TreeJoin::merge(const Part& left, const Part& right) const {
+JoiningTree::Part JoiningTree::Work::merge(const Part& left, const Part& right) {
   const Pose frame = left.state.ends.back();
   Part both;
   both.first = left.first, both.last = right.last;
@@ -96,9 +88,12 @@ Part TreeJoin::merge(const Part& left, const Part& right) const {
   return both;
 }
 
-JointProblem TreeJoin::problemOf(const Part& part) {
-  for (std::size_t i = 0; i < part.landmarks.size(); ++i)
-    local_[static_cast<std::size_t>(part.landmarks[i])] = static_cast<int>(i);
+JointProblem JoiningTree::Work::problemOf(const Part& part) {
+  auto at = ids_.begin();
+  for (std::size_t i = 0; i < part.landmarks.size(); ++i) {
+    at = std::lower_bound(at, ids_.end(), part.landmarks[i]);
+    local_[static_cast<std::size_t>(at - ids_.begin())] = static_cast<int>(i);
+  }
   JointProblem problem;
   problem.landmark_count = part.landmarks.size();
   for (std::size_t k = part.first; k < part.last; ++k) {
@@ -112,7 +107,7 @@ JointProblem TreeJoin::problemOf(const Part& part) {
   return problem;
 }
 
-void TreeJoin::refine(Part& part) {
+void JoiningTree::Work::refine(Part& part) {
   const JointProblem problem = problemOf(part);
   InformationForm form(problem);
   for (int step = 0; step < options_.steps_per_join; ++step) {
@@ -123,14 +118,24 @@ void TreeJoin::refine(Part& part) {
   }
 }
 
-}  // namespace
-
-std::optional<TreeResult> joinTree(const JointProblem& problem, const TreeOptions& options,
-                                   const std::function<bool(double)>& progress) {
-  TreeJoin tree(problem, options, progress);
-  Part whole = tree.join(0, problem.submaps());
-  if (tree.failed()) return std::nullopt;
-  return TreeResult{std::move(whole.state), tree.stopped()};
+std::optional<TreeResult> JoiningTree::join(const JointProblem& problem, const std::vector<uint32_t>& ids,
+                                            const std::function<bool(double)>& progress) {
+  const std::size_t before = parts_.empty() ? 0 : parts_.back().last;
+  Work work(options_, problem, ids, progress, before);
+  for (std::size_t k = before; k < problem.submaps(); ++k) {
+    parts_.push_back(work.leaf(k));
+    while (parts_.size() > 1 && parts_[parts_.size() - 2].size() == parts_.back().size()) {
+      const Part right = std::move(parts_.back());
+      parts_.pop_back();
+      parts_.back() = work.join(parts_.back(), right, true);
+    }
+  }
+  Part whole = parts_.back();
+  for (std::size_t i = parts_.size() - 1; i-- > 0;)
+    whole = work.join(parts_[i], whole, options_.refine_root || i > 0);
+  if (work.failed() || work.stopped()) parts_.clear();
+  if (work.failed()) return std::nullopt;
+  return TreeResult{std::move(whole.state), work.stopped()};
 }
 
 }  // namespace submap_slam::landmark_joining

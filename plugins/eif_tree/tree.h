@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "observation.h"
 
@@ -21,10 +23,36 @@ struct TreeResult {
  * SLAM). The frame of the second part of each join is the end pose of the first: its estimate is moved there,
  * landmarks of both parts become one, and the submaps of both parts are joined by the information form
  * (13)(16). Nothing is marginalised.
- * @param progress called with the share of the work done; false ends it (the rest is only moved)
- * @return estimate in the frame of the first submap; empty if an information matrix was not positive definite
+ *
+ * Parts of 1, 2, 4, … submaps are kept as the digits of a binary counter: a submap more joins parts of equal
+ * size only, and at the end those that are left are joined, the smallest first. So the tree is updated, not
+ * rebuilt, when submaps come, and its result does not depend on when they came.
  */
-std::optional<TreeResult> joinTree(const JointProblem& problem, const TreeOptions& options,
-                                   const std::function<bool(double)>& progress);
+class JoiningTree {
+ public:
+  explicit JoiningTree(const TreeOptions& options) : options_(options) {}
+
+  /** Joins all submaps of a problem; its first ones are those of the call before.
+   * @param ids of the landmarks, ascending; landmarks of the call before keep theirs
+   * @param progress called with the share of the work done; false ends it (the rest is only moved)
+   * @return estimate in the frame of the first submap; empty if an information matrix was not positive
+   * definite. After that, or if it was stopped, the next call begins anew. */
+  std::optional<TreeResult> join(const JointProblem& problem, const std::vector<uint32_t>& ids,
+                                 const std::function<bool(double)>& progress);
+
+ private:
+  /** Estimate of the submaps [first, last) in the frame of the first one's start. */
+  struct Part {
+    std::size_t first = 0, last = 0;
+    JointState state;
+    std::vector<uint32_t> landmarks;  ///< ids of the state's, ascending
+
+    std::size_t size() const { return last - first; }
+  };
+  class Work;
+
+  TreeOptions options_;
+  std::vector<Part> parts_;  // one behind the other, sizes are descending powers of two
+};
 
 }  // namespace submap_slam::landmark_joining

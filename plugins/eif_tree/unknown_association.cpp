@@ -19,10 +19,21 @@ struct Decision {
   double distance2 = kNoNeighbour;
 };
 
+/** A prediction into a submap need not be exact to the last digit. h is linear but for the headings: a change
+ * of 0.02 rad leaves an error of 0.02 m over 100 m. */
+SequentialOptions whileAssociating() {
+  SequentialOptions options;
+  options.relinearise_above_m = 1;
+  options.relinearise_above_rad = 0.02;
+  options.gauss_newton.max_step_m = 0.02;
+  options.gauss_newton.max_step_rad = 1e-3;
+  return options;
+}
+
 class SequentialAssociation {
  public:
-  SequentialAssociation(const AssociationOptions& options, const SequentialOptions& joining)
-      : options_(options), filter_(joining) {}
+  explicit SequentialAssociation(const AssociationOptions& options)
+      : options_(options), filter_(whileAssociating()) {}
 
   /** Room for the observations must be there from the start, as the filter points to them. */
   void reserve(std::size_t submaps) { associated_.observations.reserve(submaps); }
@@ -86,12 +97,12 @@ class SequentialAssociation {
 std::vector<Decision> SequentialAssociation::decide(const LandmarkSubmap& submap) {
   std::vector<Decision> decisions(submap.features.size());
   if (filter_.form() == nullptr || submap.features.empty()) return decisions;
-  const Prediction prediction =
-      predictLandmarks(*filter_.form(), filter_.state(), submap.radius() + options_.search_margin_m);
   const auto rows = 2 * static_cast<Eigen::Index>(submap.features.size());
   Eigen::VectorXd z(rows);
   for (std::size_t i = 0; i < submap.features.size(); ++i)
     z.segment<2>(2 * static_cast<Eigen::Index>(i)) << submap.features[i].x, submap.features[i].y;
+  const Prediction prediction =
+      predictLandmarks(*filter_.form(), filter_.state(), z, options_.search_margin_m);
   const Eigen::MatrixXd q = submap.covariance.asEigen().bottomRightCorner(rows, rows);
   const Comparison comparison = compare(prediction, z, q, options_.match_gate);
 
@@ -113,9 +124,9 @@ std::vector<Decision> SequentialAssociation::decide(const LandmarkSubmap& submap
 
 std::optional<UnknownAssociation> associateByPosition(const LandmarkSubmaps& submaps,
                                                       const AssociationOptions& options,
-                                                      const SequentialOptions& joining,
+                                                      const GaussNewtonOptions& gauss_newton,
                                                       const std::function<bool(double)>& progress) {
-  SequentialAssociation association(options, joining);
+  SequentialAssociation association(options);
   association.reserve(submaps.size());
   bool going_on = true;
   for (std::size_t k = 0; k < submaps.size(); ++k) {
@@ -130,10 +141,9 @@ std::optional<UnknownAssociation> associateByPosition(const LandmarkSubmaps& sub
   UnknownAssociation result = std::move(association).result();
   if (!going_on) return result;
   InformationForm form(result.associated.problem);
-  const auto joined = minimise(result.associated.problem, form, result.state, joining.gauss_newton, {});
+  const auto joined = minimise(result.associated.problem, form, result.state, gauss_newton, {});
   if (joined.status == JoinStatus::kFailed) return std::nullopt;
-  if (options.merge)
-    mergeDuplicates(result.associated, result.state, options.match_gate, joining.gauss_newton);
+  if (options.merge) mergeDuplicates(result.associated, result.state, options.match_gate, gauss_newton);
   return result;
 }
 

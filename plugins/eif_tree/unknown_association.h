@@ -13,7 +13,7 @@ struct AssociationOptions {
   bool joint_search = false;   ///< branch and bound; false: nearest neighbours
   double match_gate = 9.21;    ///< largest squared distance of a match (χ², 2 degrees of freedom: 99 %)
   double new_gate = 13.8;      ///< a feature farther from every landmark is a new one (99.9 %)
-  double search_margin_m = 5;  ///< landmarks this far outside the submap are looked at too
+  double search_margin_m = 5;  ///< landmarks this far from a feature are looked at
   bool merge = true;           ///< landmarks that turn out to be one
 };
 
@@ -33,7 +33,7 @@ struct UnknownAssociation {
  * @return empty if an information matrix was not positive definite */
 std::optional<UnknownAssociation> associateByPosition(const LandmarkSubmaps& submaps,
                                                       const AssociationOptions& options,
-                                                      const SequentialOptions& joining,
+                                                      const GaussNewtonOptions& gauss_newton,
                                                       const std::function<bool(double)>& progress);
 
 }  // namespace submap_slam::landmark_joining

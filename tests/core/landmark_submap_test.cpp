@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/opengl/CSetOfObjects.h>
+#include <mrpt/poses/CPose2D.h>
 #include <mrpt/serialization/CArchive.h>
 #include <submap_slam/core/errors.h>
 #include <submap_slam/core/joined_landmarks.h>
@@ -23,6 +24,8 @@ LandmarkSubmap twoFeatures() {
   submap.covariance.setIdentity(7);
   submap.covariance *= 0.01;
   submap.covariance(4, 0) = submap.covariance(0, 4) = 0.002;
+  submap.ids_known = false;
+  submap.nodes = {{mrpt::Clock::fromDouble(10), {}}, {mrpt::Clock::fromDouble(11), {0.5, 0.25, 0.125}}};
   return submap;
 }
 
@@ -52,6 +55,58 @@ TEST(LandmarkSubmap, IsReadBackAsItWasWritten) {
   EXPECT_EQ(read->features[1].y, 2);
   EXPECT_EQ(read->features[0].hits, 11u);
   EXPECT_EQ(read->covariance, written.covariance);
+  EXPECT_FALSE(read->ids_known);
+  ASSERT_EQ(read->nodes.size(), 2u);
+  EXPECT_EQ(read->nodes[1].stamp, written.nodes[1].stamp);
+  EXPECT_EQ(read->nodes[1].pose, written.nodes[1].pose);
+}
+
+/** Two submaps of 4 m along x, the second one turned left at the end of the first. */
+LandmarkSubmaps twoStraights() {
+  LandmarkSubmaps submaps;
+  for (int k = 0; k < 2; ++k) {
+    auto submap = LandmarkSubmap::Create();
+    submap->end_pose = {4, 0, 0};
+    for (int i = 0; i < 4; ++i)
+      submap->nodes.push_back({mrpt::Clock::fromDouble(4.0 * k + i), {static_cast<double>(i), 0, 0}});
+    submap->end_stamp = mrpt::Clock::fromDouble(4.0 * k + 4);
+    submaps.push_back(submap);
+  }
+  return submaps;
+}
+
+JoinedLandmarks joinedAt(const std::vector<mrpt::math::TPose2D>& frames) {
+  JoinedLandmarks joined;
+  for (const auto& frame : frames)
+    joined.frames.emplace_back(mrpt::poses::CPose2D(frame), mrpt::math::CMatrixDouble33());
+  return joined;
+}
+
+TEST(TrajectoryOfLandmarks, SpreadsWhatJoiningChangedOverTheNodes) {
+  // The first submap ends 0.4 m farther left than it thought; the second as it thought, from there.
+  const auto path = trajectoryOf(twoStraights(), joinedAt({{0, 0, 0}, {4, 0.4, 0}, {8, 0.4, 0}}));
+  ASSERT_EQ(path.size(), 8u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(path[i].pose.x, static_cast<double>(i), 1e-12);
+    EXPECT_NEAR(path[i].pose.y, 0.1 * static_cast<double>(i), 1e-12);
+    EXPECT_NEAR(path[4 + i].pose.y, 0.4, 1e-12);
+  }
+  EXPECT_EQ(path[5].stamp, mrpt::Clock::fromDouble(5));
+}
+
+TEST(TrajectoryOfLandmarks, OfSubmapsWithoutNodesHasTheirEnds) {
+  auto submaps = twoStraights();
+  submaps[0]->nodes.clear();
+  const auto joined = joinedAt({{0, 0, 0}, {4, 0, 0}, {8, 1, 0}});
+  EXPECT_EQ(trajectoryOf(submaps, joined)[1].stamp, submaps[1]->end_stamp);
+  EXPECT_EQ(trajectoryOf(submaps, joined)[1].pose.y, 1);
+  submaps[1]->end_stamp = INVALID_TIMESTAMP;
+  for (std::size_t k = 0; k < 2; ++k)
+    EXPECT_EQ(trajectoryOf(submaps, joined)[k].stamp, mrpt::Clock::fromDouble(static_cast<double>(k)));
+}
+
+TEST(TrajectoryOfLandmarks, RefusesFramesThatDoNotFit) {
+  EXPECT_THROW(trajectoryOf(twoStraights(), joinedAt({{0, 0, 0}})), std::invalid_argument);
 }
 
 TEST(LandmarkSubmap, WithACovarianceOfTheWrongSizeIsNotWritten) {

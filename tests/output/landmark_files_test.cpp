@@ -19,16 +19,4 @@ TEST(WriteAssociations, LeavesEmptyWhatThereIsNot) {
             "submap,feature,kind,landmark,distance2\n0,7,new,1,\n1,8,matched,1,2.5\n2,9,dropped,,11\n");
 }
 
-TEST(EndPoses, HaveTheStampsOfTheSubmapsOnlyIfAllHaveOne) {
-  LandmarkSubmaps submaps{LandmarkSubmap::Create(), LandmarkSubmap::Create()};
-  JoinedLandmarks joined;
-  joined.frames.assign(3, gaussian(0, 0, 0));
-  submaps[0]->end_stamp = mrpt::Clock::fromDouble(1000);
-  for (std::size_t k = 0; k < 2; ++k)
-    EXPECT_EQ(endPoses(submaps, joined)[k].stamp, mrpt::Clock::fromDouble(static_cast<double>(k)));
-  submaps[1]->end_stamp = mrpt::Clock::fromDouble(1001);
-  EXPECT_EQ(endPoses(submaps, joined)[0].stamp, submaps[0]->end_stamp);
-  EXPECT_EQ(endPoses(submaps, joined)[1].stamp, submaps[1]->end_stamp);
-}
-
 }  // namespace submap_slam

@@ -365,6 +365,41 @@ class EifTreePlugin : public ::testing::Test {
   ParameterTable parameters;
 };
 
+TEST_F(EifTreePlugin, JoiningAsSubmapsComeGivesTheSameBits) {
+  LandmarkWorldOptions options;
+  options.submaps = 21;
+  const LandmarkSubmaps all = simulateLandmarks(options);
+  const auto at_work = joiner->incremental();
+  for (const std::ptrdiff_t count : {1, 2, 3, 8, 13, 20, 21}) {
+    const LandmarkSubmaps first(all.begin(), all.begin() + count);
+    const JoinedLandmarks step = at_work->join(first, {}), at_once = joiner->join(first, {});
+    ASSERT_EQ(step.frames.size(), at_once.frames.size());
+    for (std::size_t k = 0; k < step.frames.size(); ++k)
+      EXPECT_EQ(step.frames[k].mean.asTPose(), at_once.frames[k].mean.asTPose()) << count << " " << k;
+    EXPECT_EQ(step.objective, at_once.objective) << count;
+  }
+}
+
+TEST_F(EifTreePlugin, AStoppedIncrementalJoiningBeginsAnew) {
+  const LandmarkSubmaps all = simulateLandmarks({});
+  const auto at_work = joiner->incremental();
+  at_work->join({all.begin(), all.begin() + 7}, [](double, const std::string&) { return false; });
+  EXPECT_EQ(at_work->join(all, {}).objective, joiner->join(all, {}).objective);
+}
+
+TEST_F(EifTreePlugin, SubmapsWithoutIdsAreMatchedByPosition) {
+  LandmarkSubmaps submaps = simulateLandmarks({});
+  const std::size_t landmarks = joiner->join(submaps, {}).landmarks.size();
+  for (const auto& submap : submaps) {
+    submap->ids_known = false;
+    for (std::size_t i = 0; i < submap->features.size(); ++i)
+      submap->features[i].id = static_cast<uint32_t>(i + 1);
+  }
+  const JoinedLandmarks joined = joiner->join(submaps, {});
+  EXPECT_FALSE(joined.association_known);
+  EXPECT_EQ(joined.landmarks.size(), landmarks);
+}
+
 TEST_F(EifTreePlugin, GivesFramesAndLandmarksWithTheirCovariances) {
   auto submaps = simulateLandmarks({});
   for (auto& feature : submaps[0]->features) feature.hits = 10;

@@ -102,7 +102,7 @@ TEST(Prediction, HasTheCovarianceOfTheDenseInverse) {
   std::vector<int> landmarks(submaps[0]->features.size());
   for (std::size_t i = 0; i < landmarks.size(); ++i) landmarks[i] = static_cast<int>(i);
   ASSERT_TRUE(filter.fuse(associated.observations[0], landmarks));
-  const Prediction p = predictLandmarks(*filter.form(), filter.state(), 1000);
+  const Prediction p = predictLandmarks(*filter.form(), filter.state(), Eigen::Vector2d::Zero(), 1000);
   ASSERT_EQ(p.landmarks.size(), landmarks.size());
 
   // After one submap the state is that submap with its covariance; the features are seen from its end.

@@ -4,11 +4,12 @@
 #include <mrpt/io/zip.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/obs/CObservationBearingRange.h>
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CRawlog.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <submap_slam/core/errors.h>
-#include <submap_slam/simulation/simulate.h>
+#include <submap_slam/simulation/scenario.h>
 
 #include <cmath>
 #include <filesystem>
@@ -104,6 +105,61 @@ TEST_F(RawlogFile, OfActionsHoldsScansAndIncrementsThatAddUpToTheOdometry) {
   }
 }
 
+SimulatedLog shortDrive() {
+  Scenario scenario = makeScenario("landmarks_block");
+  scenario.max_scans = 30;
+  return simulate(scenario, 1);
+}
+
+void expectSameLandmarks(const mrpt::obs::CObservationBearingRange& read, const LandmarkScan& written) {
+  EXPECT_EQ(read.sensorLabel, written.sensor_label);
+  EXPECT_EQ(read.maxSensorDistance, static_cast<float>(written.max_range));
+  EXPECT_EQ(read.sensor_std_range, static_cast<float>(written.sigma_range));
+  ASSERT_EQ(read.sensedData.size(), written.measurements.size());
+  for (std::size_t i = 0; i < read.sensedData.size(); ++i) {
+    EXPECT_EQ(read.sensedData[i].range, static_cast<float>(written.measurements[i].range));
+    EXPECT_EQ(read.sensedData[i].yaw, static_cast<float>(written.measurements[i].bearing));
+    EXPECT_EQ(read.sensedData[i].landmarkID, static_cast<int32_t>(*written.measurements[i].id));
+  }
+}
+
+TEST_F(RawlogFile, HoldsLandmarksBehindTheVelocitiesUpToThem) {
+  const SimulatedLog log = shortDrive();
+  writeRawlog(file("a.rawlog"), log, RawlogForm::kObservations);
+  CRawlog rawlog;
+  ASSERT_TRUE(rawlog.loadFromRawLogFile(file("a.rawlog")));
+  ASSERT_EQ(rawlog.size(), log.velocities.size() + log.frames.size());
+  std::size_t reading = 0, frame = 0;
+  for (std::size_t i = 0; i < rawlog.size(); ++i) {
+    const auto odometry = rawlog.asObservation<mrpt::obs::CObservationOdometry>(i);
+    if (odometry) {
+      EXPECT_TRUE(odometry->hasVelocities);
+      EXPECT_EQ(odometry->velocityLocal.omega, log.velocities[reading++].velocity.omega);
+      continue;
+    }
+    const auto landmarks = rawlog.asObservation<mrpt::obs::CObservationBearingRange>(i);
+    ASSERT_TRUE(landmarks);
+    EXPECT_EQ(landmarks->timestamp, log.velocities[reading - 1].stamp);
+    expectSameLandmarks(*landmarks, log.frames[frame++].landmark_scans[0]);
+  }
+}
+
+TEST_F(RawlogFile, OfActionsHoldsLandmarks) {
+  const SimulatedLog log = shortDrive();
+  writeRawlog(file("a.rawlog"), log, RawlogForm::kActions);
+  CRawlog rawlog;
+  ASSERT_TRUE(rawlog.loadFromRawLogFile(file("a.rawlog")));
+  ASSERT_EQ(rawlog.size(), 2 * log.frames.size());
+  expectSameLandmarks(
+      *rawlog.getAsObservations(3)->getObservationByClass<mrpt::obs::CObservationBearingRange>(),
+      log.frames[1].landmark_scans[0]);
+}
+
+TEST_F(RawlogFile, TrueLandmarksAreATable) {
+  writeTrueLandmarks(file("a.csv"), {{7, {1.5, -2}}});
+  EXPECT_EQ(bytesOf(file("a.csv")), "id,x,y\n7,1.500000,-2.000000\n");
+}
+
 TEST_F(RawlogFile, EndsWithItsLastObject) {
   writeRawlog(file("a.rawlog"), shortLog(4), RawlogForm::kObservations);
   CRawlog rawlog;
@@ -161,7 +217,8 @@ TEST_F(RawlogFile, HasTruthInTumFormat) {
 
 TEST_F(RawlogFile, ExamplesAreThoseOfTheRepository) {
   writeExampleLogs(folder.string());
-  for (const std::string name : {"room", "corridor_sf", "loop", "non_convex", "long_corridors"}) {
+  for (const std::string name :
+       {"room", "corridor_sf", "loop", "non_convex", "long_corridors", "landmarks"}) {
     for (const std::string ending : {".rawlog", ".truth.tum"}) {
       const auto expected = unpacked(SUBMAP_SLAM_SOURCE_DIR "/rawlogs/" + name + ending);
       ASSERT_FALSE(expected.empty()) << name + ending;
@@ -169,6 +226,8 @@ TEST_F(RawlogFile, ExamplesAreThoseOfTheRepository) {
     }
     EXPECT_LT(std::filesystem::file_size(file(name + ".rawlog")), 400000u);
   }
+  EXPECT_EQ(bytesOf(file("landmarks.landmarks.csv")),
+            bytesOf(SUBMAP_SLAM_SOURCE_DIR "/rawlogs/landmarks.landmarks.csv"));
 }
 
 }  // namespace

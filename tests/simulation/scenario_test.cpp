@@ -74,7 +74,7 @@ TEST(Scenario, TableChangesWhatIsSimulated) {
 }
 
 TEST(Scenario, KnowsEveryWorldAndNoOther) {
-  for (const auto& world : worldNames()) EXPECT_EQ(makeScenario(world).world.name, world);
+  for (const auto& world : scenarioNames()) EXPECT_EQ(makeScenario(world).world.name, world);
   EXPECT_THROW(makeScenario("moon"), ConfigError);
 }
 

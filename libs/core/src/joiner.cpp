@@ -21,7 +21,23 @@ class JoinAnew : public IncrementalJoin {
   const SubmapJoiner& joiner_;
 };
 
+class JoinLandmarksAnew : public IncrementalLandmarkJoin {
+ public:
+  explicit JoinLandmarksAnew(const LandmarkJoiner& joiner) : joiner_(joiner) {}
+
+  JoinedLandmarks join(const LandmarkSubmaps& submaps, const ProgressCallback& progress) override {
+    return joiner_.join(submaps, progress);
+  }
+
+ private:
+  const LandmarkJoiner& joiner_;
+};
+
 }  // namespace
+
+std::unique_ptr<IncrementalLandmarkJoin> LandmarkJoiner::incremental() const {
+  return std::make_unique<JoinLandmarksAnew>(*this);
+}
 
 std::unique_ptr<IncrementalJoin> SubmapJoiner::incremental() const {
   return std::make_unique<JoinAnew>(*this);

@@ -56,7 +56,10 @@ bool isFinite(const LandmarkSubmap& submap) {
   return std::isfinite(end.x) && std::isfinite(end.y) && std::isfinite(end.phi) &&
          submap.covariance.asEigen().allFinite() &&
          std::all_of(submap.features.begin(), submap.features.end(),
-                     [](const SubmapFeature& f) { return std::isfinite(f.x) && std::isfinite(f.y); });
+                     [](const SubmapFeature& f) { return std::isfinite(f.x) && std::isfinite(f.y); }) &&
+         std::all_of(submap.nodes.begin(), submap.nodes.end(), [](const LandmarkNode& n) {
+           return std::isfinite(n.pose.x) && std::isfinite(n.pose.y) && std::isfinite(n.pose.phi);
+         });
 }
 
 void requireFewEnough(std::size_t features) {
@@ -75,7 +78,7 @@ void requireDifferentIds(const LandmarkSubmap& submap) {
 
 }  // namespace
 
-uint8_t LandmarkSubmap::serializeGetVersion() const { return 0; }
+uint8_t LandmarkSubmap::serializeGetVersion() const { return 1; }
 
 void LandmarkSubmap::serializeTo(CArchive& out) const {
   if (static_cast<std::size_t>(covariance.rows()) != dimension() ||
@@ -85,10 +88,12 @@ void LandmarkSubmap::serializeTo(CArchive& out) const {
   out << end_pose.x << end_pose.y << end_pose.phi << static_cast<uint32_t>(features.size());
   for (const auto& f : features) out << f.id << f.x << f.y << f.hits;
   writeSymmetric(out, covariance);
+  out << ids_known << static_cast<uint32_t>(nodes.size());
+  for (const auto& node : nodes) out << node.stamp << node.pose.x << node.pose.y << node.pose.phi;
 }
 
 void LandmarkSubmap::serializeFrom(CArchive& in, uint8_t version) {
-  if (version != 0) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
+  if (version > 1) MRPT_THROW_UNKNOWN_SERIALIZATION_VERSION(version);
   in >> sensorLabel >> timestamp >> id >> end_stamp;
   in >> end_pose.x >> end_pose.y >> end_pose.phi;
   const auto count = in.ReadAs<uint32_t>();
@@ -96,6 +101,16 @@ void LandmarkSubmap::serializeFrom(CArchive& in, uint8_t version) {
   features.resize(count);
   for (auto& f : features) in >> f.id >> f.x >> f.y >> f.hits;
   covariance = readSymmetric(in, dimension());
+  ids_known = true;
+  nodes.clear();
+  if (version == 0) return;
+  in >> ids_known;
+  const auto node_count = in.ReadAs<uint32_t>();
+  for (uint32_t k = 0; k < node_count; ++k) {
+    LandmarkNode node;
+    in >> node.stamp >> node.pose.x >> node.pose.y >> node.pose.phi;
+    nodes.push_back(node);
+  }
 }
 
 double LandmarkSubmap::radius() const {

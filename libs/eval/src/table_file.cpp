@@ -21,6 +21,12 @@ std::string_view nextColumn(std::string_view& text) {
   return column;
 }
 
+std::size_t countOf(std::string_view columns) {
+  std::size_t count = 0;
+  while (!nextColumn(columns).empty()) ++count;
+  return count;
+}
+
 std::optional<double> toNumber(std::string_view text) {
   if (!text.empty() && text.front() == '+') text.remove_prefix(1);
   double value = 0;
@@ -36,33 +42,41 @@ std::optional<TableRow> parseLine(std::string_view text, const std::string& wher
     throw InputError(fmt::format("{}: is no text, expected lines of {}", where, columns));
   text = text.substr(0, text.find('#'));
   TableRow row;
-  for (std::size_t i = 0; i < row.values.size(); ++i) {
+  const std::size_t count = countOf(columns);
+  for (std::size_t i = 0; i < count; ++i) {
     const auto column = nextColumn(text);
     if (column.empty() && i == 0) return {};
     if (column.empty())
-      throw InputError(fmt::format("{}: {} columns, expected {}: {}", where, i, row.values.size(), columns));
+      throw InputError(fmt::format("{}: {} columns, expected {}: {}", where, i, count, columns));
     const auto value = toNumber(column);
     if (!value)
       throw InputError(fmt::format("{}: '{}' is not a finite number, expected {}", where, column, columns));
-    row.values[i] = *value;
+    row.values.push_back(*value);
   }
   return row;
 }
 
 }  // namespace
 
-std::vector<TableRow> readTable(const std::string& file, const std::string& columns) {
+std::vector<TableRow> readTable(const std::string& file, const std::string& columns, bool headed) {
   std::ifstream in(file);
   if (!in) throw InputError(file + ": cannot be opened");
   std::vector<TableRow> rows;
   std::string text;
-  for (std::size_t line = 1; std::getline(in, text); ++line)
+  std::size_t line = 1;
+  if (headed) {
+    std::getline(in, text);
+    if (text.substr(0, text.find('\r')) != columns)
+      throw InputError(fmt::format("{}:1: expected the head {}", file, columns));
+    ++line;
+  }
+  for (; std::getline(in, text); ++line)
     if (auto row = parseLine(text, fmt::format("{}:{}", file, line), columns)) {
       row->line = line;
       rows.push_back(*row);
     }
   if (in.bad()) throw InputError(file + ": cannot be read");
-  if (rows.empty()) throw InputError(file + ": holds no data, expected lines of " + columns);
+  if (rows.empty() && !headed) throw InputError(file + ": holds no data, expected lines of " + columns);
   return rows;
 }
 

@@ -2,6 +2,7 @@
 
 #include <mrpt/math/wrap2pi.h>
 #include <mrpt/poses/CPose2D.h>
+#include <submap_slam/core/random_stream.h>
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
@@ -189,7 +190,7 @@ std::optional<PosePrior> ParticleFilter::priorSinceAgreement(const Particle& par
 
 ParticleFilter::Proposal ParticleFilter::sampled(const Proposal& around, const PosePrior& prior) {
   const Eigen::Matrix3d information = around.match.information + prior.information;
-  const Eigen::Vector3d standard(normal(), normal(), normal());
+  const Eigen::Vector3d standard(standardNormal(random_), standardNormal(random_), standardNormal(random_));
   // Λ = L Lᵀ: x = L⁻ᵀ z has covariance Λ⁻¹.
   const Eigen::Vector3d offset = information.llt().matrixU().solve(standard);
   Proposal out = around;
@@ -263,13 +264,6 @@ void ParticleFilter::resample() {
     picked.back().log_weight = -std::log(static_cast<double>(wanted));
   }
   particles_ = std::move(picked);
-}
-
-double ParticleFilter::normal() {
-  // Box-Muller: std::normal_distribution gives other numbers in other standard libraries.
-  const double u = 1.0 - std::generate_canonical<double, 53>(random_);
-  const double v = std::generate_canonical<double, 53>(random_);
-  return std::sqrt(-2 * std::log(u)) * std::cos(2 * M_PI * v);
 }
 
 }  // namespace submap_slam

@@ -1,19 +1,12 @@
 #include <submap_slam/mapping/rbpf_grid_mapper.h>
 
 #include <submap_slam/core/errors.h>
+#include <submap_slam/core/random_stream.h>
 
 #include <algorithm>
 
 namespace submap_slam {
 namespace {
-
-/** Seed of a submap's own random stream (the finaliser of splitmix64 spreads neighbouring frame numbers). */
-uint64_t streamSeed(uint64_t seed, uint64_t frame) {
-  uint64_t z = seed + 0x9e3779b97f4a7c15ull * (frame + 1);
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-  return z ^ (z >> 31);
-}
 
 /** The particle filter of one submap. */
 class RbpfTracker : public SubmapTracker {

@@ -35,24 +35,31 @@ mrpt::opengl::CSetOfObjects::Ptr landmarkObjects(const std::vector<JoinedLandmar
   return objects;
 }
 
-mrpt::opengl::CSetOfObjects::Ptr frameObjects(const std::vector<mrpt::poses::CPosePDFGaussian>& frames) {
-  auto objects = mrpt::opengl::CSetOfObjects::Create();
-  objects->setName("submaps");
+mrpt::opengl::CSetOfLines::Ptr pathLine(const mrpt::poses::CPose2D& start, const Trajectory& path) {
   auto line = mrpt::opengl::CSetOfLines::Create();
   line->setColor_u8(0x20, 0x60, 0xd0);
   line->setLineWidth(2);
+  mrpt::math::TPose2D before = start.asTPose();
+  for (const auto& [stamp, pose] : path) {
+    line->appendLine(before.x, before.y, 0, pose.x, pose.y, 0);
+    before = pose;
+  }
+  return line;
+}
+
+mrpt::opengl::CSetOfObjects::Ptr frameObjects(const std::vector<mrpt::poses::CPosePDFGaussian>& frames) {
+  auto objects = mrpt::opengl::CSetOfObjects::Create();
+  objects->setName("submaps");
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const auto& pose = frames[k].mean;
     auto corner = mrpt::opengl::stock_objects::CornerXYZSimple(0.5f, 1.0f);
     corner->setPose(pose);
     objects->insert(corner);
     if (k == 0) continue;
-    line->appendLine(frames[k - 1].mean.x(), frames[k - 1].mean.y(), 0, pose.x(), pose.y(), 0);
     auto ellipse = ellipseAt(pose.x(), pose.y(), frames[k].cov.extractMatrix<2, 2>(0, 0));
     ellipse->setColor_u8(0xd0, 0x30, 0x30);
     objects->insert(ellipse);
   }
-  objects->insert(line);
   return objects;
 }
 
@@ -63,6 +70,20 @@ void writeLandmarks(const std::string& file, const std::vector<JoinedLandmark>& 
   for (const auto& l : landmarks)
     text += fmt::format("{},{},{},{},{},{},{}\n", l.id, l.x, l.y, l.covariance(0, 0), l.covariance(0, 1),
                         l.covariance(1, 1), l.hits);
+  writeBytes(file, text);
+}
+
+void writeFrames(const std::string& file, const LandmarkSubmaps& submaps, const JoinedLandmarks& joined) {
+  std::string text = "stamp,x,y,phi,sxx,sxy,sxp,syy,syp,spp\n";
+  for (std::size_t k = 0; k < submaps.size(); ++k) {
+    const auto& mean = joined.frames[k + 1].mean;
+    const auto& cov = joined.frames[k + 1].cov;
+    const double stamp = submaps[k]->end_stamp == INVALID_TIMESTAMP
+                             ? static_cast<double>(k + 1)
+                             : mrpt::Clock::toDouble(submaps[k]->end_stamp);
+    text += fmt::format("{:.6f},{},{},{},{},{},{},{},{},{}\n", stamp, mean.x(), mean.y(), mean.phi(),
+                        cov(0, 0), cov(0, 1), cov(0, 2), cov(1, 1), cov(1, 2), cov(2, 2));
+  }
   writeBytes(file, text);
 }
 
@@ -77,21 +98,12 @@ void writeAssociations(const std::string& file, const std::vector<FeatureAssocia
   writeBytes(file, text);
 }
 
-void writeLandmarkScene(const std::string& file, const JoinedLandmarks& joined) {
+void writeLandmarkScene(const std::string& file, const JoinedLandmarks& joined, const Trajectory& path) {
   mrpt::opengl::COpenGLScene scene;
   scene.insert(landmarkObjects(joined.landmarks));
   scene.insert(frameObjects(joined.frames));
+  scene.insert(pathLine(joined.frames.front().mean, path));
   writeBytes(file, compressedArchive(scene));
-}
-
-Trajectory endPoses(const LandmarkSubmaps& submaps, const JoinedLandmarks& joined) {
-  Trajectory trajectory;
-  const bool stamped = std::all_of(submaps.begin(), submaps.end(),
-                                   [](const auto& submap) { return submap->end_stamp != INVALID_TIMESTAMP; });
-  for (std::size_t k = 0; k < submaps.size() && k + 1 < joined.frames.size(); ++k)
-    trajectory.push_back({stamped ? submaps[k]->end_stamp : mrpt::Clock::fromDouble(static_cast<double>(k)),
-                          joined.frames[k + 1].mean.asTPose()});
-  return trajectory;
 }
 
 }  // namespace submap_slam

@@ -44,10 +44,11 @@ class View {
   double x_min_ = kInfinity, x_max_ = -kInfinity, y_min_ = kInfinity, y_max_ = -kInfinity, px_per_m_ = 1;
 };
 
-View viewOf(const JoinedLandmarks& joined, int max_side) {
+View viewOf(const JoinedLandmarks& joined, const Trajectory& path, int max_side) {
   View view;
   for (const auto& frame : joined.frames) view.include(frame.mean.x(), frame.mean.y());
   for (const auto& landmark : joined.landmarks) view.include(landmark.x, landmark.y);
+  for (const auto& [stamp, pose] : path) view.include(pose.x, pose.y);
   view.fit(max_side);
   return view;
 }
@@ -68,20 +69,22 @@ void drawEllipse(CImage& image, const JoinedLandmark& landmark, const View& view
 
 }  // namespace
 
-void writeLandmarkImage(const std::string& file, const JoinedLandmarks& joined, int max_side) {
+void writeLandmarkImage(const std::string& file, const JoinedLandmarks& joined, const Trajectory& path,
+                        int max_side) {
   constexpr int kMinSide = 200;
   if (max_side < kMinSide)
     throw std::invalid_argument("writeLandmarkImage: max_side must be at least 200 pixels");
   if (joined.frames.empty()) throw std::invalid_argument("writeLandmarkImage: there is nothing to show");
-  const View view = viewOf(joined, max_side);
+  const View view = viewOf(joined, path, max_side);
   CImage image(static_cast<unsigned>(view.width()), static_cast<unsigned>(view.height()), mrpt::img::CH_RGB);
   image.filledRectangle(0, 0, view.width() - 1, view.height() - 1, TColor(255, 255, 255));
-  std::vector<PathPoint> path;
-  const double last = std::max<double>(1, static_cast<double>(joined.frames.size()) - 1);
-  for (const auto& frame : joined.frames)
-    path.push_back({view.at(frame.mean.x(), frame.mean.y()), static_cast<double>(path.size()) / last});
+  const auto& start = joined.frames.front().mean;
+  std::vector<PathPoint> points{{view.at(start.x(), start.y()), 0}};
+  for (const auto& [stamp, pose] : path)
+    points.push_back(
+        {view.at(pose.x, pose.y), static_cast<double>(points.size()) / static_cast<double>(path.size())});
   for (const auto& landmark : joined.landmarks) drawEllipse(image, landmark, view);
-  drawPath(image, path, 1);
+  drawPath(image, points, 1);
   for (const auto& landmark : joined.landmarks) {
     const Pixel p = view.at(landmark.x, landmark.y);
     drawStroke(image, p, p, 2, TColor(20, 130, 70));

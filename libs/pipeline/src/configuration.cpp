@@ -29,8 +29,15 @@ std::vector<std::string> splitList(std::string text) {
 /** The parameters that the submaps depend on. */
 void describeSubmapParameters(ParameterTable& table, Configuration& config) {
   describe(table, config.reader);
+  table.section("mapping", "Which submaps are built from a log");
+  table.add("maps", config.maps,
+            "Occupancy grids, landmarks, or both along one path; auto: grids where the log has laser scans, "
+            "else landmarks",
+            {"auto", "grid", "landmarks", "grid, landmarks"});
   describe(table, config.stretches);
   describe(table, config.mapper);
+  describe(table, config.detector);
+  describe(table, config.landmark_mapper);
   table.section("run", "The run as a whole");
   table.add("seed", config.seed, "Seed of all random streams; equal seeds give equal results");
 }

@@ -2,17 +2,23 @@
 
 #include <fmt/format.h>
 #include <submap_slam/core/errors.h>
+#include <submap_slam/eval/trajectory_error.h>
 #include <submap_slam/output/json_file.h>
 #include <submap_slam/output/landmark_files.h>
 #include <submap_slam/output/landmark_image.h>
+#include <submap_slam/output/replace_file.h>
+#include <submap_slam/output/text_file.h>
 #include <submap_slam/output/trajectory_file.h>
 #include <submap_slam/pipeline/results.h>
 #include <submap_slam/pipeline/run_files.h>
 #include <submap_slam/rawlog/landmark_log.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+
+#include <submap_slam/pipeline/map_updates.h>
 
 namespace submap_slam {
 namespace {
@@ -34,40 +40,120 @@ void checkResult(const LandmarkJoiner& joiner, const JoinedLandmarks& joined, st
         fmt::format("joiner {}: gave an estimate or a covariance that is not finite", joiner.name()));
 }
 
-JoinedLandmarks runJoiner(const LandmarkJoiner& joiner, const LandmarkSubmaps& submaps, Reporter& reporter,
-                          bool& stopped) {
-  const auto show = [&](double fraction) { reporter.progress("joining with " + joiner.name(), fraction); };
-  const auto progress = [&](double fraction, const std::string&) {
-    show(fraction);
-    stopped = stopped || reporter.stopRequested();
-    return !stopped;
-  };
-  show(0);
-  JoinedLandmarks joined = joiner.join(submaps, progress);
-  show(1);
-  checkResult(joiner, joined, submaps.size());
-  const std::string outcome =
-      fmt::format("{}: {} ({}), objective {}, {} iterations", joiner.name(), toString(joined.status),
-                  joined.reason, joined.objective, joined.iterations.size());
-  if (joined.status == JoinStatus::kFailed) {
+void reportResult(const LandmarkJoiner& joiner, const JoinedLandmarks& joined, Reporter& reporter) {
+  if (joined.status == JoinStatus::kFailed)
     reporter.warning(fmt::format("{}: the submaps could not be joined: {}; results are without any joining",
                                  joiner.name(), joined.reason));
-  } else {
-    reporter.log(outcome);
-  }
-  return joined;
+  else
+    reporter.log(fmt::format("{}: {} ({}), objective {}, {} iterations", joiner.name(),
+                             toString(joined.status), joined.reason, joined.objective,
+                             joined.iterations.size()));
 }
 
-void writeLandmarkResults(const OutputDirectory& out, const LandmarkSubmaps& submaps,
-                          const JoinedLandmarks& joined) {
-  writeLandmarkImage(out.file("map.png"), joined);
-  writeLandmarkScene(out.file("map.3Dscene"), joined);
-  writeLandmarks(out.file("landmarks.csv"), joined.landmarks);
+/** What the map of the moment is looked at by, each file in one step. */
+void writeLandmarksSoFar(const OutputDirectory& out, const std::string& prefix, const JoinedLandmarks& joined,
+                         const Trajectory& path) {
+  using File = std::string;
+  replaceFile(out.file(prefix + "map.png"),
+              [&](const File& file) { writeLandmarkImage(file, joined, path); });
+  replaceFile(out.file("landmarks.csv"), [&](const File& file) { writeLandmarks(file, joined.landmarks); });
+  replaceFile(out.file(prefix + "trajectory.tum"), [&](const File& file) { writeTum(file, path); });
+}
+
+void writeLandmarkResults(const OutputDirectory& out, const std::string& prefix,
+                          const JoinedLandmarks& joined, const Trajectory& path) {
+  writeLandmarksSoFar(out, prefix, joined, path);
+  writeLandmarkScene(out.file(prefix + "map.3Dscene"), joined, path);
   writeAssociations(out.file("association.csv"), joined.associations);
-  writeTum(out.file("trajectory.tum"), endPoses(submaps, joined));
+}
+
+/** Says so where the submaps do not fit together: the objective is then far above its χ² distribution. */
+void checkConsistency(const LandmarkSubmaps& submaps, const JoinedLandmarks& joined, Reporter& reporter) {
+  double observed = 0;
+  for (const auto& submap : submaps) observed += static_cast<double>(submap->dimension());
+  const double freedom = observed - static_cast<double>(3 * submaps.size() + 2 * joined.landmarks.size());
+  constexpr double kUsual = 3;  // covariances of filters are often too small by as much
+  const double expected = kUsual * (freedom + 5 * std::sqrt(2 * freedom));
+  if (joined.status == JoinStatus::kFailed || freedom <= 0 || joined.objective <= expected) return;
+  reporter.warning(
+      fmt::format("the landmark submaps contradict each other: objective {:.4g} at {} degrees of freedom; {}",
+                  joined.objective, freedom,
+                  joined.association_known ? "ids may be wrong" : "landmarks may be matched wrongly"));
+}
+
+void addPathDifference(const Trajectory& grid_path, const Trajectory& path, Metrics& metrics) {
+  const auto pairs = associate(TimedTrajectory(grid_path), TimedTrajectory(path));
+  const TrajectoryError error = absoluteTrajectoryError(pairs);
+  metrics["landmark_path_difference_m"] = error.translation_m.rmse;
+  metrics["landmark_path_difference_deg"] = error.rotation_deg.rmse;
 }
 
 }  // namespace
+
+LandmarkHalf::LandmarkHalf(const LandmarkJoiner& joiner, const OutputDirectory& out, bool beside_grids,
+                           double update_growth, Reporter& reporter)
+    : joiner_(joiner),
+      at_work_(joiner.incremental()),
+      out_(out),
+      prefix_(beside_grids ? "landmark_" : ""),
+      schedule_(update_growth),
+      reporter_(reporter),
+      table_("submaps,landmarks,objective,status,join_s,update_s\n") {}
+
+JoinedLandmarks LandmarkHalf::join(const LandmarkSubmaps& submaps, bool& stopped) {
+  const auto show = [&](double fraction) { reporter_.progress("joining with " + joiner_.name(), fraction); };
+  const auto progress = [&](double fraction, const std::string&) {
+    show(fraction);
+    stopped = stopped || reporter_.stopRequested();
+    return !stopped;
+  };
+  show(0);
+  JoinedLandmarks joined = at_work_->join(submaps, progress);
+  show(1);
+  checkResult(joiner_, joined, submaps.size());
+  return joined;
+}
+
+void LandmarkHalf::update(std::size_t submaps_in_file, double fraction) {
+  if (!schedule_.take(submaps_in_file)) return;
+  const StageTimer timer;
+  const LandmarkSubmaps submaps = readLandmarkSubmaps(out_.file(kLandmarkFile));
+  const StageTimer join_timer;
+  bool stopped = false;
+  JoinedLandmarks joined;
+  // Else a thread that waits for the joiner might begin to build a submap meanwhile.
+  tbb::this_task_arena::isolate([&] { joined = join(submaps, stopped); });
+  if (stopped) return;
+  const double join_s = join_timer.elapsed().wall_s;
+  writeLandmarksSoFar(out_, prefix_, joined, trajectoryOf(submaps, joined));
+  in_map_ = submaps.size();
+  const double update_s = timer.elapsed().wall_s;
+  table_ += fmt::format("{},{},{},{},{:.4f},{:.4f}\n", submaps.size(), joined.landmarks.size(),
+                        joined.objective, toString(joined.status), join_s, update_s);
+  replaceFile(out_.file(kUpdatesFile), [this](const std::string& file) { writeText(file, table_); });
+  reporter_.note(fmt::format("map of {} landmark submaps ({:.0f} % of the log): {}, in {:.2f} s",
+                             submaps.size(), 100 * fraction, toString(joined.status), update_s));
+}
+
+void LandmarkHalf::finish(const LandmarkSubmaps& submaps, const Trajectory& grid_path, RunSummary& summary) {
+  Metrics metrics;
+  const StageTimer join_timer;
+  reporter_.log(fmt::format("{} landmark submaps", submaps.size()));
+  const JoinedLandmarks joined = join(submaps, summary.interrupted);
+  reportResult(joiner_, joined, reporter_);
+  checkConsistency(submaps, joined, reporter_);
+  addTime(metrics, "join_", join_timer);
+  summary.failed = joined.status == JoinStatus::kFailed;
+  addLandmarkMetrics(metrics, submaps, joined);
+
+  const StageTimer write_timer;
+  const Trajectory path = trajectoryOf(submaps, joined);
+  writeLandmarkResults(out_, prefix_, joined, path);
+  writeFrames(out_.file("frames.csv"), submaps, joined);
+  addTime(metrics, "write_", write_timer);
+  for (const auto& [key, value] : metrics.items()) summary.metrics[prefix_ + key] = value;
+  if (!grid_path.empty()) addPathDifference(grid_path, path, summary.metrics);
+}
 
 RunSummary joinLandmarkFile(const std::string& submap_file, const std::string& folder, bool overwrite,
                             const Configuration& config, Reporter& reporter) {
@@ -77,18 +163,8 @@ RunSummary joinLandmarkFile(const std::string& submap_file, const std::string& f
   const LandmarkSubmaps submaps = readLandmarkSubmaps(submap_file);
   const OutputDirectory out(folder, overwrite);
   addTime(summary.metrics, "read_", timer);
-
-  const StageTimer join_timer;
-  reporter.log(fmt::format("{} submaps", submaps.size()));
-  const JoinedLandmarks joined = runJoiner(*joiner, submaps, reporter, summary.interrupted);
-  addTime(summary.metrics, "join_", join_timer);
-  summary.failed = joined.status == JoinStatus::kFailed;
-  addLandmarkMetrics(summary.metrics, submaps, joined);
-
-  const StageTimer write_timer;
-  writeLandmarkResults(out, submaps, joined);
+  LandmarkHalf(*joiner, out, false, config.joining.update_growth, reporter).finish(submaps, {}, summary);
   writeRunRecord(out, config, reporter.logLines());
-  addTime(summary.metrics, "write_", write_timer);
   addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
   writeJson(out.file(kMetricsFile), summary.metrics);
   return summary;

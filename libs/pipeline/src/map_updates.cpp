@@ -52,21 +52,15 @@ MapUpdates::MapUpdates(SubmapFollower& follower, EditedSubmaps& submaps, Joining
       submaps_(submaps),
       joining_(joining),
       out_(out),
-      growth_(growth),
+      schedule_(growth),
       reporter_(reporter),
       table_(headOf(joining.joiners())) {
   const std::string before = goes_on ? contentOf(out.file(kUpdatesFile)) : "";
   if (before.compare(0, table_.size(), table_) == 0) table_ = before;
 }
 
-bool MapUpdates::isDue(std::size_t submaps_in_file) const {
-  return submaps_in_file > joined_ &&
-         static_cast<double>(submaps_in_file) >= std::round(growth_ * static_cast<double>(joined_));
-}
-
 void MapUpdates::update(std::size_t submaps_in_file, double fraction) {
-  if (!isDue(submaps_in_file)) return;
-  joined_ = submaps_in_file;
+  if (!schedule_.take(submaps_in_file)) return;
   const StageTimer timer;
   submaps_.add(follower_.readNew());
   const double read_s = timer.elapsed().wall_s;
@@ -77,14 +71,14 @@ void MapUpdates::update(std::size_t submaps_in_file, double fraction) {
 
   const JoinedMap& joined = outcome->map;
   if (joined.map.observedCells() == 0) {
-    reporter_.note(fmt::format("{} submaps show nothing yet", joined_));
+    reporter_.note(fmt::format("{} submaps show nothing yet", schedule_.last()));
     return;
   }
   const StageTimer write_timer;
   writeMapSoFar(out_, submaps_.shown(), joined);
-  in_map_ = joined_;
+  in_map_ = schedule_.last();
   list(*outcome, read_s, write_timer.elapsed().wall_s);
-  reporter_.note(fmt::format("map of {} submaps ({:.0f} % of the log): {}, in {:.2f} s", joined_,
+  reporter_.note(fmt::format("map of {} submaps ({:.0f} % of the log): {}, in {:.2f} s", schedule_.last(),
                              100 * fraction, toString(joined.status), timer.elapsed().wall_s));
 }
 
@@ -93,7 +87,7 @@ std::optional<JoinOutcome> MapUpdates::join() {
   try {
     return joining_.join(submaps_.shown(), unheard, submaps_.byHand());
   } catch (const std::exception& error) {
-    reporter_.warning(fmt::format("no map of the first {} submaps: {}", joined_, error.what()));
+    reporter_.warning(fmt::format("no map of the first {} submaps: {}", schedule_.last(), error.what()));
     return std::nullopt;
   }
 }

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <submap_slam/core/version.h>
 
+#include <algorithm>
+
 namespace submap_slam {
 
 void addLogMetrics(Metrics& metrics, const LogReport& report) {
@@ -57,7 +59,9 @@ void addLandmarkMetrics(Metrics& metrics, const LandmarkSubmaps& submaps, const 
   metrics["join_reason"] = joined.reason;
   metrics["join_iterations"] = joined.iterations.size();
   metrics["association"] = joined.association_known ? "known" : "unknown";
-  if (joined.association_known) return;
+  const bool ids_known =
+      std::all_of(submaps.begin(), submaps.end(), [](const auto& submap) { return submap->ids_known; });
+  if (joined.association_known || !ids_known) return;
   const AssociationErrors errors = compareWithIds(joined.associations);
   metrics["association_wrong"] = errors.wrong;
   metrics["association_missed"] = errors.missed;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <submap_slam/core/errors.h>
-#include <submap_slam/mapping/grid_mapper.h>
 #include <submap_slam/mapping/node_refinement.h>
 #include <submap_slam/output/json_file.h>
 #include <submap_slam/output/text_file.h>
@@ -13,23 +12,18 @@
 #include <submap_slam/pipeline/results.h>
 #include <submap_slam/pipeline/run_files.h>
 #include <submap_slam/pipeline/stage_timer.h>
-#include <tbb/global_control.h>
-#include <tbb/parallel_pipeline.h>
+#include <submap_slam/rawlog/landmark_log.h>
 
 #include <algorithm>
 #include <memory>
+#include <optional>
+
+#include <submap_slam/pipeline/landmark_pipeline.h>
+#include <submap_slam/pipeline/map_forms.h>
+#include <submap_slam/pipeline/submap_building.h>
 
 namespace submap_slam {
 namespace {
-
-/** A stretch on its way through the stages. */
-struct Job {
-  Stretch stretch;
-  GridSubmaps submaps;
-  double fraction_read = 0;
-  bool built = false;
-};
-using JobPtr = std::shared_ptr<Job>;
 
 void reportLog(const StretchSource& source, Reporter& reporter) {
   const LogReport& report = source.report();
@@ -49,6 +43,13 @@ void requireObservations(const EvidenceGrid& map) {
   if (map.observedCells() == 0)
     throw InputError(
         "the map would be empty: no scan has a valid beam between [reader] min_range and [mapper] max_range");
+}
+
+void requireFeatures(const LandmarkSubmaps& submaps) {
+  if (std::all_of(submaps.begin(), submaps.end(),
+                  [](const auto& submap) { return submap->features.empty(); }))
+    throw InputError(
+        "the map would be empty: no landmark was measured as often as [landmark_mapper] min_hits asks for");
 }
 
 std::shared_ptr<SubmapStore> makeStore(const Configuration& config, const OutputDirectory& out) {
@@ -76,9 +77,10 @@ void refineNodesAndJoin(GridSubmaps& submaps, JoinOutcome& outcome, const Joinin
   }
 }
 
-/** Joins and writes everything but metrics.json. */
-void joinAndWrite(const EditedSubmaps& submaps, Joining& joining, const OutputDirectory& out,
-                  const Configuration& config, SubmapStore& store, Reporter& reporter, RunSummary& summary) {
+/** Joins and writes everything but the record of the run; returns the path. */
+Trajectory joinAndWrite(const EditedSubmaps& submaps, Joining& joining, const OutputDirectory& out,
+                        const Configuration& config, SubmapStore& store, Reporter& reporter,
+                        RunSummary& summary) {
   checkEdits(submaps.edits(), submaps.all());
   Metrics& metrics = summary.metrics;
   const StageTimer join_timer;
@@ -94,52 +96,111 @@ void joinAndWrite(const EditedSubmaps& submaps, Joining& joining, const OutputDi
   addTime(metrics, "join_", join_timer);
 
   const StageTimer write_timer;
-  writeJoined(out, shown, joined, config, reporter.logLines(), metrics);
+  writeJoined(out, shown, joined, metrics);
   addTime(metrics, "write_", write_timer);
+  return trajectoryOf(shown, joined);
+}
+
+/** The grids of a run that maps a log: joined while they are built, if the user wants that, and in the end.
+ */
+class GridHalf {
+ public:
+  GridHalf(const OutputDirectory& out, Joining& joining, const Edits& edits, bool goes_on,
+           const Configuration& config, Reporter& reporter)
+      : out_(out),
+        joining_(joining),
+        config_(config),
+        reporter_(reporter),
+        store_(makeStore(config, out)),
+        follower_(out.file(kSubmapFile), store_),
+        submaps_(edits),
+        updates_(follower_, submaps_, joining, out, config.joining.update_growth, goes_on, reporter) {}
+
+  MapUpdates& updates() { return updates_; }
+
+  Trajectory finish(RunSummary& summary) {
+    submaps_.add(follower_.readNew());
+    requireSubmaps(out_.file(kSubmapFile));
+    return joinAndWrite(submaps_, joining_, out_, config_, *store_, reporter_, summary);
+  }
+
+ private:
+  const OutputDirectory& out_;
+  Joining& joining_;
+  const Configuration& config_;
+  Reporter& reporter_;
+  std::shared_ptr<SubmapStore> store_;
+  SubmapFollower follower_;
+  EditedSubmaps submaps_;
+  MapUpdates updates_;
+};
+
+/** The last files of a run; with metrics.json it is finished. */
+void writeRecord(const OutputDirectory& out, const Configuration& config, Reporter& reporter,
+                 const StageTimer& timer, RunSummary& summary) {
+  writeRunRecord(out, config, reporter.logLines());
+  addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
+  writeJson(out.file(kMetricsFile), summary.metrics);
+}
+
+void refuseEdits(const Edits& edits, const MapForms& forms) {
+  if (!forms.grids && !edits.list.empty())
+    throw ConfigError("--edits: is for grid submaps; the log is mapped as landmarks");
 }
 
 }  // namespace
 
 void writeJoined(const OutputDirectory& out, const GridSubmaps& submaps, const JoinedMap& joined,
-                 const Configuration& config, const std::vector<std::string>& log, Metrics& metrics) {
+                 Metrics& metrics) {
   writeResults(out, submaps, joined);
   const auto progress = mappingProgress(submaps, joined.frames);
   addProgressMetrics(metrics, progress);
   writeText(out.file("submaps.csv"), progressCsv(progress));
-  writeRunRecord(out, config, log);
 }
 
 RunSummary mapRawlog(const std::string& log, const std::string& folder, bool overwrite,
                      const Configuration& config, Reporter& reporter, const Edits& edits) {
   const StageTimer timer;
   RunSummary summary;
+  const MapForms forms = mapForms(log, config);
+  refuseEdits(edits, forms);
   Joining joining(config.joinerChain(), config.joining.map_resolution);  // a wrong name is refused at once
-  StretchSource source(log, config.reader, config.stretches);
+  const auto landmark_joiner = forms.landmarks ? config.landmarkJoiner() : nullptr;
+  StretchSource source(log, readerParams(config, forms), stretchParams(config, forms),
+                       detectorParams(config, forms));
   const OutputDirectory out = openFolder(folder, overwrite);
 
-  SubmapLogWriter writer = openSubmapFile(out.file(kSubmapFile), log, config, overwrite, reporter);
-  const bool goes_on = writer.state().submaps_done > 0;
-  const auto mapper = makeGridMapper(config.mapper, config.seed);
-  const auto store = makeStore(config, out);
-  SubmapFollower follower(out.file(kSubmapFile), store);
-  EditedSubmaps submaps(edits);
-  MapUpdates updates(follower, submaps, joining, out, config.joining.update_growth, goes_on, reporter);
+  SubmapFiles files = openSubmapFiles(out, forms, log, config, overwrite, reporter);
+  const bool goes_on = files.submapsDone() > 0;
+  std::optional<GridHalf> grids;
+  if (forms.grids) grids.emplace(out, joining, edits, goes_on, config, reporter);
+  std::optional<LandmarkHalf> landmarks;
+  if (forms.landmarks)
+    landmarks.emplace(*landmark_joiner, out, forms.grids, config.joining.update_growth, reporter);
   StretchDone show;
   if (config.joining.incremental)
-    show = [&](double fraction_read) { updates.update(writer.state().submaps_done, fraction_read); };
-  summary.interrupted = !buildSubmaps(source, *mapper, writer, reporter, show);
-  summary.submaps_in_map = updates.submapsInMap();
+    show = [&](double fraction_read) {
+      if (grids)
+        grids->updates().update(files.submapsDone(), fraction_read);
+      else
+        landmarks->update(files.submapsDone(), fraction_read);
+    };
+  summary.interrupted = !buildSubmaps(source, StretchMapper(config, forms), files, reporter, show);
+  summary.submaps_in_map = grids ? grids->updates().submapsInMap() : landmarks->submapsInMap();
   addTime(summary.metrics, "build_", timer);
   reportLog(source, reporter);
   summary.damaged = !source.damage().empty();
   if (summary.interrupted) return summary;
 
   addLogMetrics(summary.metrics, source.report());
-  submaps.add(follower.readNew());
-  requireSubmaps(out.file(kSubmapFile));
-  joinAndWrite(submaps, joining, out, config, *store, reporter, summary);
-  addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
-  writeJson(out.file(kMetricsFile), summary.metrics);
+  Trajectory path;
+  if (grids) path = grids->finish(summary);
+  if (landmarks && !summary.interrupted) {
+    const LandmarkSubmaps submaps = readLandmarkSubmaps(out.file(kLandmarkFile));
+    requireFeatures(submaps);
+    landmarks->finish(submaps, path, summary);
+  }
+  writeRecord(out, config, reporter, timer, summary);
   return summary;
 }
 
@@ -147,15 +208,16 @@ RunSummary buildRawlog(const std::string& log, const std::string& submap_file, b
                        const Configuration& config, Reporter& reporter) {
   const StageTimer timer;
   RunSummary summary;
-  StretchSource source(log, config.reader, config.stretches);
+  const MapForms forms = mapForms(log, config);
+  StretchSource source(log, readerParams(config, forms), stretchParams(config, forms),
+                       detectorParams(config, forms));
   if (!overwrite) refuseFinished(submap_file);
-  SubmapLogWriter writer = openSubmapFile(submap_file, log, config, overwrite, reporter);
-  const auto mapper = makeGridMapper(config.mapper, config.seed);
-  summary.interrupted = !buildSubmaps(source, *mapper, writer, reporter);
+  SubmapFiles files = openSubmapFiles(submap_file, forms, log, config, overwrite, reporter);
+  summary.interrupted = !buildSubmaps(source, StretchMapper(config, forms), files, reporter);
   reportLog(source, reporter);
   summary.damaged = !source.damage().empty();
   addLogMetrics(summary.metrics, source.report());
-  summary.metrics["submaps"] = writer.state().submaps_done;
+  summary.metrics["submaps"] = files.submapsDone();
   addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
   return summary;
 }
@@ -174,55 +236,8 @@ RunSummary joinFile(const std::string& submap_file, const std::string& folder, b
   summary.damaged = !read.damage.empty();
   if (summary.damaged) reporter.warning(read.damage + "; the submaps before it are joined");
   joinAndWrite(submaps, joining, out, config, *store, reporter, summary);
-  addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
-  writeJson(out.file(kMetricsFile), summary.metrics);
+  writeRecord(out, config, reporter, timer, summary);
   return summary;
-}
-
-bool buildSubmaps(StretchSource& source, const LocalMapper& mapper, SubmapLogWriter& writer,
-                  Reporter& reporter, const StretchDone& on_disk) {
-  using tbb::filter_mode;
-  const uint64_t built_before = writer.state().stretches_done;
-  bool read_all = false, left_out = false;
-  std::size_t frames_built = 0;
-
-  const auto read = [&](tbb::flow_control& flow) -> JobPtr {
-    while (!reporter.stopRequested()) {
-      auto stretch = source.next();
-      read_all = !stretch;
-      if (read_all) break;
-      if (stretch->index < built_before) continue;  // an earlier run did it
-      return std::make_shared<Job>(Job{std::move(*stretch), {}, source.fractionRead(), false});
-    }
-    flow.stop();
-    return nullptr;
-  };
-  const auto build = [&](const JobPtr& job) {
-    if (reporter.stopRequested()) return job;
-    job->submaps = mapper.map(job->stretch);
-    job->built = true;
-    return job;
-  };
-  const auto write = [&](const JobPtr& job) {
-    left_out = left_out || !job->built;
-    if (left_out) return;  // also what comes behind it, so that the file has no gap
-    auto id = static_cast<uint32_t>(writer.state().submaps_done);
-    for (const auto& submap : job->submaps) submap->id = id++;
-    writer.appendStretch(job->submaps);
-    frames_built += job->stretch.ownFrames();
-    reporter.progress("building submaps", job->fraction_read, frames_built, "scans");
-    if (on_disk) on_disk(job->fraction_read);
-  };
-
-  reporter.progress("building submaps", 0);
-  const std::size_t threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  const std::size_t in_flight = threads + 2;  // one being read, one being written
-  tbb::parallel_pipeline(in_flight, tbb::make_filter<void, JobPtr>(filter_mode::serial_in_order, read) &
-                                        tbb::make_filter<JobPtr, JobPtr>(filter_mode::parallel, build) &
-                                        tbb::make_filter<JobPtr, void>(filter_mode::serial_in_order, write));
-  const bool complete = read_all && !left_out;
-  if (complete) writer.finish();
-  return complete;
 }
 
 }  // namespace submap_slam

@@ -47,9 +47,42 @@ SubmapLogWriter openSubmapFile(const std::string& file, const std::string& log, 
   return writer;
 }
 
+namespace {
+
+SubmapFiles openFiles(const std::string& grid_file, const std::string& landmark_file, const MapForms& forms,
+                      const std::string& log, const Configuration& config, bool overwrite,
+                      Reporter& reporter) {
+  SubmapFiles files;
+  if (forms.grids) files.grids = openSubmapFile(grid_file, log, config, overwrite, reporter);
+  if (forms.landmarks) files.landmarks = openSubmapFile(landmark_file, log, config, overwrite, reporter);
+  return files;
+}
+
+bool isBegun(const fs::path& submaps) {
+  return fs::exists(resumeFileOf(submaps.string())) || isEmptyFile(submaps);
+}
+
+}  // namespace
+
+SubmapFiles openSubmapFiles(const OutputDirectory& out, const MapForms& forms, const std::string& log,
+                            const Configuration& config, bool overwrite, Reporter& reporter) {
+  return openFiles(out.file(kSubmapFile), out.file(kLandmarkFile), forms, log, config, overwrite, reporter);
+}
+
+SubmapFiles openSubmapFiles(const std::string& file, const MapForms& forms, const std::string& log,
+                            const Configuration& config, bool overwrite, Reporter& reporter) {
+  return openFiles(file, forms.grids ? landmarkFileBeside(file) : file, forms, log, config, overwrite,
+                   reporter);
+}
+
+std::string landmarkFileBeside(const std::string& file) {
+  const fs::path path(file);
+  return (path.parent_path() / (path.stem().string() + "_landmarks" + path.extension().string())).string();
+}
+
 OutputDirectory openFolder(const std::string& folder, bool overwrite) {
-  const fs::path path(folder), submaps = path / kSubmapFile;
-  const bool begun = fs::exists(resumeFileOf(submaps.string())) || isEmptyFile(submaps);
+  const fs::path path(folder);
+  const bool begun = isBegun(path / kSubmapFile) || isBegun(path / kLandmarkFile);
   const bool unfinished = begun && !fs::exists(path / kMetricsFile);
   OutputDirectory out(path, overwrite || unfinished);
   if (overwrite) fs::remove(path / kMetricsFile);  // from here on the folder holds an unfinished run

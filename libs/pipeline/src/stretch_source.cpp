@@ -7,8 +7,8 @@
 namespace submap_slam {
 
 StretchSource::StretchSource(const std::string& log, const ReaderParams& reader,
-                             const StretchParams& stretches)
-    : reader_(log, reader), splitter_(stretches) {
+                             const StretchParams& stretches, const PoleDetectorParams& detector)
+    : reader_(log, reader), splitter_(stretches), detector_(detector) {
   first_ = nextFrame();
 }
 
@@ -24,7 +24,10 @@ std::optional<Stretch> StretchSource::next() {
 std::optional<Frame> StretchSource::nextFrame() {
   try {
     auto frame = reader_.next();
-    if (frame) ++frames_;
+    if (!frame) return frame;
+    ++frames_;
+    if (detector_.enabled)
+      for (const auto& scan : frame->scans) frame->landmark_scans.push_back(poleLandmarks(*scan, detector_));
     return frame;
   } catch (const InputError& e) {
     if (frames_ == 0) throw;  // nothing to keep

@@ -37,27 +37,37 @@ bool FrameAssembler::addReading(mrpt::Clock::time_point stamp, const mrpt::math:
 }
 
 void FrameAssembler::addScan(const mrpt::obs::CObservation2DRangeScan::Ptr& scan, uint64_t entry) {
-  if (!belongsToLast(*scan)) pending_.push_back(makeFrame(*scan, entry));
-  pending_.back().logged.frame.scans.push_back(scan);
-  open_ = true;
+  const auto holds = [&](const Frame& frame) {
+    return std::any_of(frame.scans.begin(), frame.scans.end(),
+                       [&](const auto& other) { return other->sensorLabel == scan->sensorLabel; });
+  };
+  frameFor(scan->timestamp, entry, holds).scans.push_back(scan);
+}
+
+void FrameAssembler::addLandmarks(mrpt::Clock::time_point stamp, LandmarkScan scan, uint64_t entry) {
+  const auto holds = [&](const Frame& frame) {
+    return std::any_of(frame.landmark_scans.begin(), frame.landmark_scans.end(),
+                       [&](const LandmarkScan& other) { return other.sensor_label == scan.sensor_label; });
+  };
+  frameFor(stamp, entry, holds).landmark_scans.push_back(std::move(scan));
 }
 
 /** Two scans of one sensor are never one frame: some logs give the same stamp to all scans of a burst. */
-bool FrameAssembler::belongsToLast(const mrpt::obs::CObservation2DRangeScan& scan) const {
-  if (!open_ || pending_.empty()) return false;
-  const Frame& last = pending_.back().logged.frame;
-  return last.stamp == scan.timestamp &&
-         std::none_of(last.scans.begin(), last.scans.end(),
-                      [&](const auto& other) { return other->sensorLabel == scan.sensorLabel; });
+Frame& FrameAssembler::frameFor(mrpt::Clock::time_point stamp, uint64_t entry,
+                                const std::function<bool(const Frame&)>& holds) {
+  const bool last = open_ && !pending_.empty() && pending_.back().logged.frame.stamp == stamp &&
+                    !holds(pending_.back().logged.frame);
+  if (!last) pending_.push_back(makeFrame(stamp, entry));
+  open_ = true;
+  return pending_.back().logged.frame;
 }
 
-FrameAssembler::Pending FrameAssembler::makeFrame(const mrpt::obs::CObservation2DRangeScan& scan,
-                                                  uint64_t entry) {
+FrameAssembler::Pending FrameAssembler::makeFrame(mrpt::Clock::time_point stamp, uint64_t entry) {
   Pending added;
   added.logged.entry = entry;
   Frame& frame = added.logged.frame;
   frame.index = next_index_++;
-  frame.stamp = scan.timestamp;
+  frame.stamp = stamp;
   if (kind_ == OdometryKind::kIncrements) {
     frame.odometry = chained_;
     added.odometry_settled = true;

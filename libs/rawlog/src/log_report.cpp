@@ -64,6 +64,12 @@ void assessContent(const LogReport& r, Findings& add) {
       r.skipped_frames_stamp);
   add.add(r.skipped_scans_label > 0, Severity::kInfo, "{} scans were skipped because of sensor_labels.",
           r.skipped_scans_label);
+  add.add(r.skipped_landmarks_label > 0, Severity::kInfo,
+          "{} landmark observations were skipped because of landmark_labels.", r.skipped_landmarks_label);
+  add.add(r.skipped_landmarks_bad > 0, Severity::kWarning,
+          "{} landmark observations whose sensor pose makes no sense were skipped; check how the log was "
+          "converted.",
+          r.skipped_landmarks_bad);
 }
 
 void assessStamps(const LogReport& r, Findings& add) {
@@ -132,6 +138,35 @@ void assessScanner(const std::string& label, const ScannerReport& s, Findings& a
       label, percent(s.burst_steps, s.scans));
 }
 
+void assessLandmarks(const std::string& label, const LandmarkSensorReport& s, Findings& add) {
+  add.add(s.broken > 0, Severity::kWarning,
+          "Landmarks '{}': {} measurements are NaN, infinite or not positive; they are left out.", label,
+          s.broken);
+  add.add(s.near > 0, Severity::kInfo,
+          "Landmarks '{}': {} measurements are nearer than [reader] min_range; they are left out.", label,
+          s.near);
+  add.add(s.observations > 0 && s.measurements == 0, Severity::kWarning,
+          "Landmarks '{}': no observation has any usable measurement.", label);
+  add.add(s.with_id > 0 && s.with_id < s.measurements, Severity::kInfo,
+          "Landmarks '{}': {} of the measurements have an id, the others have none.", label,
+          percent(s.with_id, s.measurements));
+}
+
+std::string landmarkText(const std::string& label, const LandmarkSensorReport& s) {
+  const auto orUnknown = [](double value, const char* unit) {
+    return value > 0 ? fmt::format("{:.2f} {}", value, unit) : std::string("not given");
+  };
+  const auto& p = s.sensor_pose;
+  const std::string ids =
+      s.with_id == 0 ? "none with id" : fmt::format("{} with id of {} landmarks", s.with_id, s.ids.size());
+  return fmt::format(
+      "  landmarks '{}': {} observations ({} empty) with {} measurements, {}, at x {:.3f} y {:.3f} m, yaw "
+      "{:.2f} deg\n    farthest {:.2f} m, max. range {}, sigma {} and {}\n",
+      label, s.observations, s.empty, s.measurements, ids, p.x, p.y, mrpt::RAD2DEG(p.phi), s.largest_range,
+      orUnknown(s.max_range, "m"), orUnknown(s.sigma_range, "m"),
+      orUnknown(mrpt::RAD2DEG(s.sigma_bearing), "deg"));
+}
+
 std::string scannerText(const std::string& label, const ScannerReport& s) {
   const auto& p = s.sensor_pose;
   return fmt::format(
@@ -174,6 +209,7 @@ std::string LogReport::asText() const {
                         mrpt::system::dateTimeToString(first_stamp), largest_gap_s);
   text += "\n";
   for (const auto& [label, scanner] : scanners) text += scannerText(label, scanner);
+  for (const auto& [label, sensor] : landmark_sensors) text += landmarkText(label, sensor);
   if (frames_with_odometry > 0)
     text += fmt::format("  odometry: {} readings, path {:.1f} m, largest step {:.3f} m, {:.1f} deg\n",
                         odometry_readings, path_length_m, largest_step_m, mrpt::RAD2DEG(largest_step_rad));
@@ -189,6 +225,7 @@ std::vector<Finding> assess(const LogReport& report) {
   assessStamps(report, add);
   assessOdometry(report, add);
   for (const auto& [label, scanner] : report.scanners) assessScanner(label, scanner, add);
+  for (const auto& [label, sensor] : report.landmark_sensors) assessLandmarks(label, sensor, add);
   std::stable_sort(findings.begin(), findings.end(),
                    [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
   return findings;

@@ -46,6 +46,8 @@ void LogStatistics::add(Frame& frame, double min_range, LogReport& report) {
     addScan(*scan, scanner);
     last = scan;
   }
+  for (const LandmarkScan& scan : frame.landmark_scans)
+    addLandmarks(scan, report.landmark_sensors[scan.sensor_label]);
   ++report.frames;
 }
 
@@ -84,6 +86,23 @@ void LogStatistics::addScan(const mrpt::obs::CObservation2DRangeScan& scan, Scan
   scanner.aperture = scan.aperture;
   scanner.max_range = scan.maxRange;
   scanner.sensor_pose = scan.sensorPose.asTPose();
+}
+
+void LogStatistics::addLandmarks(const LandmarkScan& scan, LandmarkSensorReport& sensor) {
+  if (sensor.observations++ == 0) {
+    sensor.max_range = scan.max_range;
+    sensor.sigma_range = scan.sigma_range;
+    sensor.sigma_bearing = scan.sigma_bearing;
+    sensor.sensor_pose = scan.T_robot_sensor;
+  }
+  if (scan.measurements.empty()) ++sensor.empty;
+  sensor.measurements += scan.measurements.size();
+  for (const LandmarkMeasurement& measurement : scan.measurements) {
+    sensor.largest_range = std::max(sensor.largest_range, measurement.range);
+    if (!measurement.id) continue;
+    ++sensor.with_id;
+    sensor.ids.insert(*measurement.id);
+  }
 }
 
 }  // namespace submap_slam

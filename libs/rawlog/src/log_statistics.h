@@ -19,6 +19,7 @@ class LogStatistics {
   void addStamp(const Frame& frame, LogReport& report);
   void addOdometry(const Frame& frame, LogReport& report);
   void addScan(const mrpt::obs::CObservation2DRangeScan& scan, ScannerReport& scanner);
+  void addLandmarks(const LandmarkScan& scan, LandmarkSensorReport& sensor);
 
   std::optional<mrpt::math::TPose2D> last_odometry_;
   mrpt::Clock::time_point last_stamp_{};

@@ -80,6 +80,15 @@ bool isNewerVersion(const std::string& message) {
   return message.find("unknown serialization version") != std::string::npos;
 }
 
+/** " because …" where MRPT says that an observation holds a landmark twice, which it does not read. */
+std::string repeatedLandmark(const std::string& message) {
+  const std::string before = "Duplicate landmark ID=";
+  const auto at = message.find(before);
+  if (at == std::string::npos) return "";
+  const auto id = message.substr(at + before.size());
+  return fmt::format(" because it has the landmark id {} twice", id.substr(0, id.find(' ')));
+}
+
 std::string unknownClass(const std::string& name) {
   return fmt::format("holds class {}, which this program does not know and cannot skip", name);
 }
@@ -129,7 +138,8 @@ mrpt::serialization::CSerializable::Ptr ObjectStream::readObject() {
                       header.class_name),
           false);
     const auto unknown = unregisteredClassIn(error.what());
-    return fail(unknown.empty() ? fmt::format("the content of a {} makes no sense", header.class_name)
+    return fail(unknown.empty() ? fmt::format("the content of a {} makes no sense{}", header.class_name,
+                                              repeatedLandmark(error.what()))
                                 : unknownClass(unknown),
                 false);
   }

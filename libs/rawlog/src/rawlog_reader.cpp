@@ -6,7 +6,6 @@
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/system/string_utils.h>
 #include <submap_slam/core/errors.h>
-#include <submap_slam/core/grid_submap.h>
 #include <submap_slam/rawlog/rawlog_reader.h>
 
 #include <charconv>
@@ -15,15 +14,19 @@
 #include <utility>
 
 #include "frame_assembler.h"
+#include "landmark_scan.h"
 #include "log_statistics.h"
+#include "no_frames.h"
 #include "object_stream.h"
 #include "scan_check.h"
+#include "velocity_odometry.h"
 
 namespace submap_slam {
 namespace {
 
 using mrpt::obs::CActionRobotMovement2D;
 using mrpt::obs::CObservation2DRangeScan;
+using mrpt::obs::CObservationBearingRange;
 
 /** A place in the log: an entry, or seconds from the first stamp. */
 struct LogPlace {
@@ -87,22 +90,30 @@ void describe(ParameterTable& table, ReaderParams& params) {
   table.section("reader", "Reading rawlogs");
   table.add("sensor_labels", params.sensor_labels,
             "Sensor labels of the scanners to use, separated by commas; empty: all 2D scanners");
+  table.add("landmark_labels", params.landmark_labels,
+            "Sensor labels of the landmark observations (range and bearing) to use, separated by commas; "
+            "empty: all");
   table.add("min_range", params.min_range, "m", {0, 1e3},
-            "Ranges below this are invalid: the robot's own body, or a zero that marks an error");
+            "Ranges below this are invalid: the robot's own body, or a zero that marks an error; also of "
+            "landmarks");
   table.add("from", params.from,
             "Where to start: a rawlog entry such as 1200, or seconds from the first stamp such as 60s; "
             "empty: at the "
             "start");
   table.add("to", params.to, "Last rawlog entry, or seconds from the first stamp, to use; empty: to the end");
+  describe(table, params.vehicle);
 }
 
 struct RawlogReader::Impl {
   Impl(const std::string& file, const ReaderParams& reader_params)
       : params(reader_params),
         labels(parseLabels(params.sensor_labels)),
+        landmark_labels(parseLabels(params.landmark_labels)),
         from(parsePlace("from", params.from)),
         to(parsePlace("to", params.to)),
-        stream(file) {
+        stream(file),
+        velocities(params.vehicle) {
+    validate(params.vehicle);
     if (!(params.min_range >= 0))
       throw ConfigError(fmt::format("[reader] min_range = {}: must not be negative", params.min_range));
     report.file = file;
@@ -110,17 +121,19 @@ struct RawlogReader::Impl {
   }
 
   ReaderParams params;
-  std::set<std::string> labels;
+  std::set<std::string> labels, landmark_labels;
   LogPlace from, to;
   ObjectStream stream;
   FrameAssembler assembler;
+  VelocityOdometry velocities;
   LogStatistics statistics;
   LogReport report;
   std::optional<mrpt::Clock::time_point> first_stamp;
-  uint64_t frames_behind_to = 0;  ///< in a row, up to the last one
-  bool started = false;           ///< `from` was reached
-  bool source_done = false;       ///< nothing more to read
-  bool ended = false;             ///< nothing more to deliver, findings are made
+  std::optional<mrpt::Clock::time_point> last_frame_stamp;  ///< of the frames that were delivered
+  uint64_t frames_behind_to = 0;                            ///< in a row, up to the last one
+  bool started = false;                                     ///< `from` was reached
+  bool source_done = false;                                 ///< nothing more to read
+  bool ended = false;                                       ///< nothing more to deliver, findings are made
 
   std::optional<Frame> next();
   void readEntry();
@@ -128,14 +141,15 @@ struct RawlogReader::Impl {
   void takeActions(const mrpt::obs::CActionCollection& actions);
   void takeSensoryFrame(const mrpt::obs::CSensoryFrame& sensory_frame);
   void takeObservation(const mrpt::obs::CObservation::Ptr& observation);
+  void requireVelocities(bool has_velocities) const;
+  mrpt::math::TPose2D poseOf(const mrpt::obs::CObservationOdometry& reading);
   void takeReading(const mrpt::obs::CObservationOdometry& reading);
   void takeScan(const CObservation2DRangeScan::Ptr& scan);
   bool accept(const CObservation2DRangeScan& scan);
+  void takeLandmarks(const CObservationBearingRange& observation);
   void noteStamp(mrpt::Clock::time_point stamp);
   bool isBehind(const LogPlace& place, const LoggedFrame& logged, bool inclusive) const;
   void end(const std::optional<LogDamage>& found);
-  std::string whyNoFrames() const;
-  std::string whyNoScanIsUsable() const;
 };
 
 std::optional<Frame> RawlogReader::Impl::next() {
@@ -150,6 +164,9 @@ std::optional<Frame> RawlogReader::Impl::next() {
       logged->frame.index -= report.skipped_frames_stamp;
       started = started || isBehind(from, *logged, true);
       if (!started) continue;
+      if (last_frame_stamp && params.vehicle.usesVelocities())
+        logged->frame.motion_covariance = velocities.covariance(*last_frame_stamp, logged->frame.stamp);
+      last_frame_stamp = logged->frame.stamp;
       statistics.add(logged->frame, params.min_range, report);
       return std::move(logged->frame);
     }
@@ -197,6 +214,7 @@ void RawlogReader::Impl::take(const mrpt::serialization::CSerializable::Ptr& obj
 void RawlogReader::Impl::takeActions(const mrpt::obs::CActionCollection& actions) {
   const auto movement = chooseMovement(actions);
   if (!movement) return;
+  requireVelocities(false);  // increments are all that actions are sure to have
   const bool by_odometry = movement->estimationMethod == CActionRobotMovement2D::emOdometry;
   // With emOdometry the log stores the raw increment; the pose change is drawn anew from the motion model
   // when it is read.
@@ -220,13 +238,32 @@ void RawlogReader::Impl::takeObservation(const mrpt::obs::CObservation::Ptr& obs
   ++report.classes[nameOf(*observation)];
   if (const auto scan = std::dynamic_pointer_cast<CObservation2DRangeScan>(observation))
     takeScan(scan);
+  else if (const auto landmarks = std::dynamic_pointer_cast<CObservationBearingRange>(observation))
+    takeLandmarks(*landmarks);
   else if (const auto reading = std::dynamic_pointer_cast<mrpt::obs::CObservationOdometry>(observation))
     takeReading(*reading);
 }
 
+void RawlogReader::Impl::requireVelocities(bool has_velocities) const {
+  if (params.vehicle.usesVelocities() && !has_velocities)
+    throw ConfigError(
+        fmt::format("{}: [vehicle] model = {} needs velocities, but the odometry of entry {} has none",
+                    report.file, params.vehicle.model, stream.entries() - 1));
+}
+
+/** T_odom_robot by the logged pose or, if the vehicle is driven by velocities, by these; not finite if they
+ * are not. */
+mrpt::math::TPose2D RawlogReader::Impl::poseOf(const mrpt::obs::CObservationOdometry& reading) {
+  requireVelocities(reading.hasVelocities);
+  if (!params.vehicle.usesVelocities()) return reading.odometry.asTPose();
+  const auto& v = reading.velocityLocal;
+  const mrpt::math::TPose2D as_pose(v.vx, v.vy, v.omega);
+  return isFinite(as_pose) ? velocities.add(reading.timestamp, v) : as_pose;
+}
+
 void RawlogReader::Impl::takeReading(const mrpt::obs::CObservationOdometry& reading) {
   noteStamp(reading.timestamp);
-  const auto pose = reading.odometry.asTPose();
+  const auto pose = poseOf(reading);
   if (isFinite(pose) && assembler.addReading(reading.timestamp, pose))
     ++report.odometry_readings;
   else
@@ -234,7 +271,7 @@ void RawlogReader::Impl::takeReading(const mrpt::obs::CObservationOdometry& read
 }
 
 void RawlogReader::Impl::takeScan(const CObservation2DRangeScan::Ptr& scan) {
-  if (!accept(*scan)) return;
+  if (!params.use_scans || !accept(*scan)) return;
   noteStamp(scan->timestamp);
   if (scan->timestamp == mrpt::Clock::time_point()) ++report.stampless_scans;
   assembler.addScan(scan, stream.entries() - 1);
@@ -262,6 +299,25 @@ bool RawlogReader::Impl::accept(const CObservation2DRangeScan& scan) {
   return true;
 }
 
+void RawlogReader::Impl::takeLandmarks(const CObservationBearingRange& observation) {
+  if (!params.use_landmarks) return;
+  if (!landmark_labels.empty() && landmark_labels.count(observation.sensorLabel) == 0) {
+    ++report.skipped_landmarks_label;
+    ++report.skipped_labels[observation.sensorLabel];
+    return;
+  }
+  if (!isUsable(observation)) {
+    ++report.skipped_landmarks_bad;
+    return;
+  }
+  noteStamp(observation.timestamp);
+  if (observation.timestamp == mrpt::Clock::time_point()) ++report.stampless_scans;
+  assembler.addLandmarks(
+      observation.timestamp,
+      toLandmarkScan(observation, params.min_range, report.landmark_sensors[observation.sensorLabel]),
+      stream.entries() - 1);
+}
+
 void RawlogReader::Impl::noteStamp(mrpt::Clock::time_point stamp) {
   if (!first_stamp && stamp != mrpt::Clock::time_point()) first_stamp = stamp;
 }
@@ -271,39 +327,7 @@ void RawlogReader::Impl::end(const std::optional<LogDamage>& found) {
   report.damage = found;
   report.findings = assess(report);
   if (report.damage) throw InputError(report.damage->text);
-  if (report.frames == 0) throw InputError(fmt::format("{}: {}", report.file, whyNoFrames()));
-}
-
-std::string RawlogReader::Impl::whyNoFrames() const {
-  if (report.file_bytes == 0) return "the file is empty, expected a rawlog";
-  if (report.entries == 0) return "holds no object, expected a rawlog";
-  if (const auto submaps = report.classes.find("submap_slam::GridSubmap"); submaps != report.classes.end())
-    return "holds submaps, expected a rawlog with 2D laser scans";
-  std::string content;
-  for (const auto& [name, count] : report.classes)
-    content += fmt::format("{}{} {}", content.empty() ? "" : ", ", count, name);
-  if (!params.from.empty() || !params.to.empty())
-    return fmt::format("no usable 2D laser scan from '{}' to '{}'; {} entries were read ({})", params.from,
-                       params.to, report.entries, content);
-  if (report.skipped_scans_label > 0) {
-    std::string found;
-    for (const auto& [label, count] : report.skipped_labels)
-      found += fmt::format("{}'{}'", found.empty() ? "" : ", ", label);
-    return fmt::format("no 2D laser scan with [reader] sensor_labels = {}; the log has {}",
-                       params.sensor_labels, found);
-  }
-  return fmt::format("no usable 2D laser scan; the file holds {}{}", content, whyNoScanIsUsable());
-}
-
-std::string RawlogReader::Impl::whyNoScanIsUsable() const {
-  std::string reasons;
-  const auto add = [&](uint64_t scans, const char* reason) {
-    if (scans > 0) reasons += fmt::format("{}{} {}", reasons.empty() ? "; scans: " : ", ", scans, reason);
-  };
-  add(report.skipped_scans_tilted, "tilted by more than 5 deg");
-  add(report.skipped_scans_bad, "with a senseless aperture, maximum range or sensor pose");
-  add(report.skipped_scans_empty, "without beams");
-  return reasons;
+  if (report.frames == 0) throw InputError(fmt::format("{}: {}", report.file, whyNoFrames(report, params)));
 }
 
 RawlogReader::RawlogReader(const std::string& file, const ReaderParams& params)

@@ -22,6 +22,10 @@ struct GuardedClass {
       counts;  ///< which of its 32-bit reads are counts, from 0; the others are floats and flags
   Inner inner = Inner::kAny;   ///< class of its inner objects
   bool block_follows = false;  ///< behind the first count come its elements in one read
+
+  // a single byte that is a flag, and elements of 32-bit reads, with a label behind them
+  std::size_t floats_if_false = 0;    ///< so many more floats behind the flag, which `counts` leaves out
+  std::size_t reads_per_element = 0;  ///< of the first count; 0: no such elements
 };
 
 namespace {
@@ -38,9 +42,10 @@ const GuardedClass* find(const std::string& class_name) {
       {"CMatrix", {{0, 1}, Inner::kAny, false}},                   // rows, columns
       {"CMatrixF", {{0, 1}, Inner::kAny, false}},
       {"CMatrixD", {{0, 1}, Inner::kAny, false}},
-      {"CObservation2DRangeScan", {{2, 5}, Inner::kAny, true}},  // beams, letters of the label
-      {"CObservationOdometry", {{0}, Inner::kAny, false}},       // letters of the label
-      {"CSensoryFrame", {{0}, Inner::kObservation, false}},      // observations
+      {"CObservation2DRangeScan", {{2, 5}, Inner::kAny, true}},       // beams, letters of the label
+      {"CObservationBearingRange", {{4}, Inner::kAny, false, 3, 4}},  // landmarks
+      {"CObservationOdometry", {{0}, Inner::kAny, false}},            // letters of the label
+      {"CSensoryFrame", {{0}, Inner::kObservation, false}},           // observations
   };
   const auto found = table.find(class_name.substr(class_name.rfind(':') + 1));
   return found == table.end() ? nullptr : &found->second;
@@ -59,10 +64,17 @@ void ReadGuard::onRead(const void* data, std::size_t size) {
   }
   const auto first = static_cast<uint8_t>(bytes[0]);
   if (size == 1 && first >= kHeaderBit) last_byte_ = first;
+  if (size == 1 && first < kHeaderBit && !levels_.empty()) takeFlag(levels_.back(), first != 0);
   if (size != sizeof(uint32_t) || levels_.empty()) return;
   uint32_t word = 0;
   std::memcpy(&word, data, sizeof(word));
   checkWord(levels_.back(), word);
+}
+
+void ReadGuard::takeFlag(Level& level, bool value) {
+  if (!level.known || level.flag_read) return;
+  level.flag_read = true;
+  if (!value) level.floats_ahead = level.known->floats_if_false;
 }
 
 bool ReadGuard::opensObject(const std::string& class_name) {
@@ -102,12 +114,19 @@ void ReadGuard::checkInner(const Level& outer, const std::string& class_name) co
 }
 
 void ReadGuard::checkWord(Level& level, uint32_t value) const {
+  if (level.floats_ahead > 0) {
+    --level.floats_ahead;
+    return;
+  }
   const std::size_t index = level.words++;
   if (index == 0) level.first_word = value;
   if (!level.known) return;
   const auto& counts = level.known->counts;
-  if (std::find(counts.begin(), counts.end(), index) == counts.end()) return;
+  const bool label = level.label > 0 && index == level.label;
+  if (!label && std::find(counts.begin(), counts.end(), index) == counts.end()) return;
   if (value > kLargestCount) throw std::runtime_error("implausible count");
+  if (!label && level.known->reads_per_element > 0)
+    level.label = index + 1 + level.known->reads_per_element * value;
   // one range or four validity flags are a 32-bit read too: the positions behind are unknown
   const bool confusing = value == 1 || value == sizeof(uint32_t);
   if (level.known->block_follows && confusing) level.known = nullptr;

@@ -29,8 +29,12 @@ class ReadGuard {
     std::size_t words = 0;                ///< 32-bit reads so far
     uint32_t first_word = 0;
     bool version_read = false;
+    bool flag_read = false;
+    std::size_t floats_ahead = 0;  ///< 32-bit reads that no position counts
+    std::size_t label = 0;         ///< which read is the number of letters of the label, once that is known
   };
 
+  static void takeFlag(Level& level, bool value);
   bool opensObject(const std::string& class_name);
   void checkInner(const Level& outer, const std::string& class_name) const;
   void checkWord(Level& level, uint32_t value) const;

@@ -13,25 +13,24 @@ namespace {
 
 const double kMaxTilt = mrpt::DEG2RAD(5.0);
 
-bool isFinite(const mrpt::math::TPose3D& pose) {
-  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.z) && std::isfinite(pose.yaw) &&
-         std::isfinite(pose.pitch) && std::isfinite(pose.roll);
-}
-
 /** Whether the scan plane is horizontal; that of a scanner mounted upside down (roll = π) is too. */
 bool isLevel(const mrpt::math::TPose3D& pose) {
   const double roll = std::abs(mrpt::math::wrapToPi(pose.roll));
   return std::min(roll, M_PI - roll) <= kMaxTilt && std::abs(pose.pitch) <= kMaxTilt;
 }
 
-/** Corrupt data can leave a bool that is neither true nor false, which must not be used as one. */
+}  // namespace
+
+bool isFinite(const mrpt::math::TPose3D& pose) {
+  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.z) && std::isfinite(pose.yaw) &&
+         std::isfinite(pose.pitch) && std::isfinite(pose.roll);
+}
+
 bool isSound(const bool& flag) {
   uint8_t byte = 0;
   std::memcpy(&byte, &flag, sizeof(byte));
   return byte <= 1;
 }
-
-}  // namespace
 
 ScanVerdict judge(const mrpt::obs::CObservation2DRangeScan& scan) {
   if (scan.getScanSize() == 0) return ScanVerdict::kEmpty;

@@ -12,6 +12,11 @@
 namespace submap_slam {
 namespace {
 
+bool isSubmap(const mrpt::serialization::CSerializable& object) {
+  return dynamic_cast<const GridSubmap*>(&object) != nullptr ||
+         dynamic_cast<const LandmarkSubmap*>(&object) != nullptr;
+}
+
 /** Throws InputError unless the file starts with the submaps that the side-car says. */
 void checkFront(const std::string& file, const ResumeState& state) {
   if (state.submap_bytes == 0) return;
@@ -19,15 +24,17 @@ void checkFront(const std::string& file, const ResumeState& state) {
     return InputError(fmt::format("{}: cannot be resumed, {} says {} submaps in {} bytes: {}", file,
                                   resumeFileOf(file), state.submaps_done, state.submap_bytes, why));
   };
-  SubmapLogReader reader(file);
-  try {
-    for (uint64_t k = 0; k < state.submaps_done; ++k)
-      if (!reader.next()) throw mismatch(fmt::format("the file ends after {}", k));
-  } catch (const InputError& error) {
-    throw mismatch(error.what());
+  ObjectStream stream(file);
+  for (uint64_t k = 0; k < state.submaps_done; ++k) {
+    const auto object = stream.next();
+    if (stream.damage()) throw mismatch(stream.damage()->text);
+    if (!object) throw mismatch(fmt::format("the file ends after {}", k));
+    if (!isSubmap(*object))
+      throw mismatch(fmt::format("entry {} is a {}", k, object->GetRuntimeClass()->className));
+    if (stream.cutBehindLast()) throw mismatch(fmt::format("the gzip member of entry {} is incomplete", k));
   }
-  if (reader.validBytes() != state.submap_bytes)
-    throw mismatch(fmt::format("they take {} bytes", reader.validBytes()));
+  if (stream.validBytes() != state.submap_bytes)
+    throw mismatch(fmt::format("they take {} bytes", stream.validBytes()));
 }
 
 /** The identity of a run without its progress. */
@@ -169,7 +176,12 @@ SubmapLogWriter::~SubmapLogWriter() = default;
 SubmapLogWriter::SubmapLogWriter(SubmapLogWriter&&) noexcept = default;
 SubmapLogWriter& SubmapLogWriter::operator=(SubmapLogWriter&&) noexcept = default;
 
-void SubmapLogWriter::appendStretch(const GridSubmaps& submaps) {
+void SubmapLogWriter::appendStretch(const GridSubmaps& submaps) { append(submaps); }
+
+void SubmapLogWriter::appendLandmarkStretch(const LandmarkSubmaps& submaps) { append(submaps); }
+
+template <class Submaps>
+void SubmapLogWriter::append(const Submaps& submaps) {
   if (state_.complete) throw std::logic_error("SubmapLogWriter: the file is already complete");
   for (const auto& submap : submaps) {
     const auto member = gzipMember(*submap);

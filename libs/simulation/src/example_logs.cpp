@@ -22,6 +22,7 @@ void writeExample(const std::string& stem, const Scenario& scenario, RawlogForm 
   const SimulatedLog log = simulate(scenario, seed);
   writeRawlog(stem + ".rawlog", log, form);
   writeTruth(stem + ".truth.tum", log.truth);
+  if (!log.landmarks.empty()) writeTrueLandmarks(stem + ".landmarks.csv", log.landmarks);
 }
 
 }  // namespace
@@ -33,6 +34,7 @@ void writeExampleLogs(const std::string& folder) {
   writeExample(in + "loop", atSpeed("loop", 1.0), RawlogForm::kObservations, 3);
   writeExample(in + "non_convex", small("non_convex"), RawlogForm::kObservations, 4);
   writeExample(in + "long_corridors", small("long_corridors"), RawlogForm::kObservations, 5);
+  writeExample(in + "landmarks", makeScenario("landmarks_block"), RawlogForm::kObservations, 6);
 }
 
 }  // namespace submap_slam

@@ -2,6 +2,7 @@
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/obs/CObservationBearingRange.h>
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/serialization/CArchive.h>
@@ -17,18 +18,61 @@ namespace submap_slam {
 namespace {
 
 using mrpt::math::TPose2D;
+using mrpt::obs::CObservationBearingRange;
 using mrpt::poses::CPose2D;
 using mrpt::serialization::CArchive;
 
-void writeObservations(CArchive& archive, const Frame& frame) {
-  if (frame.odometry) {
-    mrpt::obs::CObservationOdometry odometry;
-    odometry.timestamp = frame.stamp;
-    odometry.sensorLabel = "ODOMETRY";
-    odometry.odometry = CPose2D(*frame.odometry);
-    archive << odometry;
+mrpt::obs::CObservationOdometry odometryAt(mrpt::Clock::time_point stamp, const TPose2D& pose) {
+  mrpt::obs::CObservationOdometry odometry;
+  odometry.timestamp = stamp;
+  odometry.sensorLabel = "ODOMETRY";
+  odometry.odometry = CPose2D(pose);
+  return odometry;
+}
+
+mrpt::obs::CObservationOdometry odometryWithVelocity(const VelocityReading& reading) {
+  auto odometry = odometryAt(reading.stamp, reading.pose);
+  odometry.hasVelocities = true;
+  odometry.velocityLocal = reading.velocity;
+  return odometry;
+}
+
+CObservationBearingRange toObservation(const LandmarkScan& scan, mrpt::Clock::time_point stamp) {
+  CObservationBearingRange observation;
+  observation.timestamp = stamp;
+  observation.sensorLabel = scan.sensor_label;
+  observation.setSensorPose(mrpt::poses::CPose3D(mrpt::math::TPose3D(scan.T_robot_sensor)));
+  observation.maxSensorDistance = static_cast<float>(scan.max_range);
+  observation.fieldOfView_yaw = static_cast<float>(scan.field_of_view);
+  observation.fieldOfView_pitch = 0;
+  observation.sensor_std_range = static_cast<float>(scan.sigma_range);
+  observation.sensor_std_yaw = static_cast<float>(scan.sigma_bearing);
+  for (const LandmarkMeasurement& measurement : scan.measurements) {
+    auto& sensed = observation.sensedData.emplace_back();
+    sensed.range = static_cast<float>(measurement.range);
+    sensed.yaw = static_cast<float>(measurement.bearing);
+    sensed.pitch = 0;
+    sensed.landmarkID = measurement.id ? static_cast<int32_t>(*measurement.id) : -1;
   }
-  for (const auto& scan : frame.scans) archive << *scan;
+  return observation;
+}
+
+/** All that sensors saw, apart from odometry. */
+std::vector<mrpt::obs::CObservation::Ptr> observationsOf(const Frame& frame) {
+  std::vector<mrpt::obs::CObservation::Ptr> observations(frame.scans.begin(), frame.scans.end());
+  for (const LandmarkScan& scan : frame.landmark_scans)
+    observations.push_back(CObservationBearingRange::Create(toObservation(scan, frame.stamp)));
+  return observations;
+}
+
+void writeObservations(CArchive& archive, const SimulatedLog& log) {
+  auto reading = log.velocities.begin();
+  for (const Frame& frame : log.frames) {
+    for (; reading != log.velocities.end() && reading->stamp <= frame.stamp; ++reading)
+      archive << odometryWithVelocity(*reading);
+    if (log.velocities.empty() && frame.odometry) archive << odometryAt(frame.stamp, *frame.odometry);
+    for (const auto& observation : observationsOf(frame)) archive << *observation;
+  }
 }
 
 void writeActionAndSensoryFrame(CArchive& archive, const Frame& frame, const TPose2D& increment) {
@@ -37,9 +81,9 @@ void writeActionAndSensoryFrame(CArchive& archive, const Frame& frame, const TPo
   movement.computeFromOdometry(CPose2D(increment), {});
   mrpt::obs::CActionCollection actions;
   actions.insert(movement);
-  mrpt::obs::CSensoryFrame scans;
-  for (const auto& scan : frame.scans) scans.insert(scan);
-  archive << actions << scans;
+  mrpt::obs::CSensoryFrame sensory_frame;
+  for (const auto& observation : observationsOf(frame)) sensory_frame.insert(observation);
+  archive << actions << sensory_frame;
 }
 
 /** Odometry increment since the frame before; zero for the first one. */
@@ -85,14 +129,21 @@ void writeRawlog(const std::string& file, const SimulatedLog& log, RawlogForm fo
   mrpt::io::CMemoryStream stream;
   stream.setAllocBlockSize(kGrowth);
   auto archive = mrpt::serialization::archiveFrom(stream);
-  for (std::size_t k = 0; k < log.frames.size(); ++k) {
-    if (form == RawlogForm::kObservations)
-      writeObservations(archive, log.frames[k]);
-    else
+  if (form == RawlogForm::kObservations) {
+    writeObservations(archive, log);
+  } else {
+    for (std::size_t k = 0; k < log.frames.size(); ++k)
       writeActionAndSensoryFrame(archive, log.frames[k], incrementTo(k, log.frames));
   }
   const std::string packed = gzip(stream.getRawBufferData(), stream.getTotalBytesCount());
   writeFile(file, packed.data(), packed.size());
+}
+
+void writeTrueLandmarks(const std::string& file, const std::vector<TrueLandmark>& landmarks) {
+  std::string text = "id,x,y\n";
+  for (const auto& [id, position] : landmarks)
+    text += fmt::format("{},{:.6f},{:.6f}\n", id, position.x, position.y);
+  writeFile(file, text.data(), text.size());
 }
 
 void writeTruth(const std::string& file, const Trajectory& truth) {

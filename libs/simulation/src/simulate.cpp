@@ -4,8 +4,9 @@
 #include <submap_slam/simulation/simulate.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+
+#include "log_time.h"
 
 namespace submap_slam {
 namespace {
@@ -16,16 +17,8 @@ using mrpt::obs::CObservation2DRangeScan;
 /** Streams of random numbers of one seed. */
 enum Stream : uint32_t { kOdometryStream = 1, kLaserStream = 2 };
 
-constexpr double kEpoch = 1577836800;   // 2020-01-01 00:00 UTC, s
 constexpr double kOdometryStep = 1e-6;  // m, rad
 constexpr double kTimeRounding = 1e-9;  // s; a step that ends at the time of an event belongs to it
-
-double rounded(double value, double step) { return step > 0 ? std::round(value / step) * step : value; }
-
-mrpt::Clock::time_point stampOf(std::size_t index, double period) {
-  const auto since_start = std::chrono::nanoseconds(std::llround(static_cast<double>(index) * period * 1e9));
-  return mrpt::Clock::fromDouble(kEpoch) + std::chrono::duration_cast<mrpt::Clock::duration>(since_start);
-}
 
 /** Measures a robot's steps and adds them up. */
 class Odometer {

@@ -54,6 +54,12 @@ struct JoinedLandmarks {
   std::vector<FeatureAssociation> associations;  ///< of every feature of every submap, in their order
 };
 
+/** The path in the global map frame. Of submaps with nodes, the pose of each of them: what joining changed of
+ * the submap's end pose is spread over its nodes by the path length to them. Where a submap has none, the end
+ * pose of each submap with its stamp; where these are missing too, positions in the sequence stand for
+ * seconds. */
+Trajectory trajectoryOf(const LandmarkSubmaps& submaps, const JoinedLandmarks& joined);
+
 /** How an association that ignored the ids compares with them. Each joined landmark stands for the id that
  * most of its features have. */
 struct AssociationErrors {

@@ -19,6 +19,12 @@ struct SubmapFeature {
   uint32_t hits = 1;    ///< observations of it that the submap rests on
 };
 
+/** Where the robot was at one frame of a landmark submap. */
+struct LandmarkNode {
+  mrpt::Clock::time_point stamp;
+  mrpt::math::TPose2D pose;  ///< T_s_robot (m, rad)
+};
+
 /** A landmark submap: estimate of the pose where it ends and of the landmarks seen on the way, in the frame
  * of the pose where it starts. The next submap starts where this one ends, so a sequence of submaps hangs
  * together (Huang, Wang, Dissanayake, "Sparse local submap joining filter", 2008). No measurement is used in
@@ -41,6 +47,11 @@ class LandmarkSubmap : public mrpt::obs::CObservation, public mrpt::opengl::Visu
 
   mrpt::math::TPose2D end_pose;  ///< T_s_end (m, rad)
   std::vector<SubmapFeature> features;
+  bool ids_known = true;  ///< false: ids say nothing beyond this submap
+
+  /** The path, as the local filter knows it, if that is known: the frames of the submap, without the one at
+   * `end_pose` that begins the next. */
+  std::vector<LandmarkNode> nodes;
 
   /** Covariance Q of the state (x_e, y_e, φ_e, x_1, y_1, …, x_n, y_n) (m, rad), symmetric. */
   mrpt::math::CMatrixDouble covariance;

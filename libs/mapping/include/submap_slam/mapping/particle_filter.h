@@ -90,7 +90,6 @@ class ParticleFilter {
   void normalise();
   void prune();
   void resample();
-  double normal();
 
   FilterParams params_;
   ScanMatcher matcher_;

@@ -3,6 +3,8 @@
 #include <submap_slam/core/landmark_joiner.h>
 #include <submap_slam/core/parameters.h>
 #include <submap_slam/core/submap_joiner.h>
+#include <submap_slam/landmarks/landmark_mapper_params.h>
+#include <submap_slam/landmarks/pole_detector.h>
 #include <submap_slam/mapping/grid_mapper.h>
 #include <submap_slam/mapping/node_refinement.h>
 #include <submap_slam/mapping/stretch_splitter.h>
@@ -53,7 +55,10 @@ class Configuration {
 
   ReaderParams reader;
   StretchParams stretches;
+  std::string maps = "auto";  ///< [mapping] maps, see mapForms()
   GridMapperParams mapper;
+  PoleDetectorParams detector;
+  LandmarkMapperParams landmark_mapper;
   uint64_t seed = 1;
   JoiningParams joining;
   NodeRefinementParams node_refinement;

@@ -4,6 +4,12 @@
 #include <submap_slam/pipeline/pipeline.h>
 
 #include <string>
+#include <submap_slam/core/landmark_joiner.h>
+#include <submap_slam/output/output_directory.h>
+
+#include <memory>
+
+#include <submap_slam/pipeline/update_schedule.h>
 
 namespace submap_slam {
 
@@ -12,7 +18,41 @@ namespace submap_slam {
 RunSummary joinLandmarkFile(const std::string& submap_file, const std::string& folder, bool overwrite,
                             const Configuration& config, Reporter& reporter);
 
-/** What `join` says at the end. */
+/** The landmarks of a run: joined on the way, if the user wants that, and in the end. Submaps whose ids say
+ * nothing beyond them are associated by position. */
+class LandmarkHalf {
+ public:
+  /** @param beside_grids the run has grids too: files and figures of the landmarks get the prefix `landmark_`
+   */
+  LandmarkHalf(const LandmarkJoiner& joiner, const OutputDirectory& out, bool beside_grids,
+               double update_growth, Reporter& reporter);
+
+  /** To be called when the file of the run holds so many submaps: joins them where an update is due, and
+   * replaces map.png, trajectory.tum and landmarks.csv; updates.csv gets a line. */
+  void update(std::size_t submaps_in_file, double fraction);
+
+  /** Joins and writes everything but the record of the run.
+   * @param grid_path where there are grids: `landmark_path_difference_…` says how the landmarks' path differs
+   */
+  void finish(const LandmarkSubmaps& submaps, const Trajectory& grid_path, RunSummary& summary);
+
+  /** How many submaps the latest map has; 0: there is none. */
+  std::size_t submapsInMap() const { return in_map_; }
+
+ private:
+  JoinedLandmarks join(const LandmarkSubmaps& submaps, bool& stopped);
+
+  const LandmarkJoiner& joiner_;
+  std::unique_ptr<IncrementalLandmarkJoin> at_work_;
+  const OutputDirectory& out_;
+  std::string prefix_;
+  UpdateSchedule schedule_;
+  Reporter& reporter_;
+  std::string table_;  // content of updates.csv
+  std::size_t in_map_ = 0;
+};
+
+/** What `join` and `map` say at the end. */
 std::string landmarkSummary(const RunSummary& summary, const std::string& folder);
 
 }  // namespace submap_slam

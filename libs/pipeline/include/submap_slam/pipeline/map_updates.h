@@ -10,6 +10,8 @@
 #include <optional>
 #include <string>
 
+#include <submap_slam/pipeline/update_schedule.h>
+
 namespace submap_slam {
 
 constexpr const char* kUpdatesFile = "updates.csv";
@@ -39,7 +41,6 @@ class MapUpdates {
   std::size_t submapsInMap() const { return in_map_; }
 
  private:
-  bool isDue(std::size_t submaps_in_file) const;
   std::optional<JoinOutcome> join();
   void list(const JoinOutcome& outcome, double read_s, double write_s);
 
@@ -47,10 +48,10 @@ class MapUpdates {
   EditedSubmaps& submaps_;
   Joining& joining_;
   const OutputDirectory& out_;
-  const double growth_;
+  UpdateSchedule schedule_;
   Reporter& reporter_;
-  std::string table_;                    // content of updates.csv
-  std::size_t joined_ = 0, in_map_ = 0;  // submaps of the last update, and of the last one that gave a map
+  std::string table_;       // content of updates.csv
+  std::size_t in_map_ = 0;  // submaps of the last update that gave a map
 };
 
 }  // namespace submap_slam

@@ -2,16 +2,13 @@
 #pragma once
 
 #include <submap_slam/core/edits.h>
-#include <submap_slam/core/local_mapper.h>
+#include <submap_slam/core/joined_map.h>
 #include <submap_slam/output/output_directory.h>
 #include <submap_slam/pipeline/configuration.h>
 #include <submap_slam/pipeline/metrics.h>
 #include <submap_slam/pipeline/reporter.h>
-#include <submap_slam/pipeline/stretch_source.h>
-#include <submap_slam/rawlog/submap_log.h>
 
 #include <cstddef>
-#include <functional>
 #include <string>
 
 namespace submap_slam {
@@ -26,8 +23,9 @@ struct RunSummary {
   bool failed = false;             ///< landmark submaps could not be joined; what is written is not joined
 };
 
-/** Maps a rawlog: reads frames, cuts them into stretches, builds their submaps, joins them, writes all
- * results to a folder.
+/** Maps a rawlog: reads frames, cuts them into stretches, builds their submaps in the forms that [mapping]
+ * maps names, joins each form, writes all results to a folder. Where there are both, those of landmarks have
+ * names that begin with `landmark_`, and metrics.json says how far the two paths are apart.
  *
  * A run that was stopped or killed is continued when it is started again; its results have the same bytes as
  * those of a run that never stopped, also for any number of threads (metrics.json, which holds times,
@@ -38,7 +36,8 @@ struct RunSummary {
 RunSummary mapRawlog(const std::string& log, const std::string& folder, bool overwrite,
                      const Configuration& config, Reporter& reporter, const Edits& edits = {});
 
-/** The first half of mapRawlog: submaps of a rawlog into a file. */
+/** The first half of mapRawlog: submaps of a rawlog into a file; with both forms, those of landmarks into one
+ * beside it (landmarkFileBeside). */
 RunSummary buildRawlog(const std::string& log, const std::string& submap_file, bool overwrite,
                        const Configuration& config, Reporter& reporter);
 
@@ -46,21 +45,9 @@ RunSummary buildRawlog(const std::string& log, const std::string& submap_file, b
 RunSummary joinFile(const std::string& submap_file, const std::string& folder, bool overwrite,
                     const Configuration& config, Reporter& reporter, const Edits& edits = {});
 
-/** Writes all results of a joining but metrics.json, and adds the figures that come with writing them.
- * @param submaps those that the joiners got
- * @param log     lines of log.txt */
+/** Writes all results of a joining but the record of the run, and adds the figures that come with writing them.
+ * @param submaps those that the joiners got */
 void writeJoined(const OutputDirectory& out, const GridSubmaps& submaps, const JoinedMap& joined,
-                 const Configuration& config, const std::vector<std::string>& log, Metrics& metrics);
-
-/** Called in log order, when the submaps of a stretch are on disk, with the share of the log that was read up
- * to its end. */
-using StretchDone = std::function<void(double)>;
-
-/** Builds the submaps of all stretches that `writer` does not have yet, in parallel; each is on disk before
- * the progress goes on. Memory does not grow with the log. After a stop signal no stretch is begun any more;
- * returns false if it left stretches out.
- * @param on_disk may be empty; the file does not change while it runs, but stretches are built meanwhile */
-bool buildSubmaps(StretchSource& source, const LocalMapper& mapper, SubmapLogWriter& writer,
-                  Reporter& reporter, const StretchDone& on_disk = {});
+                 Metrics& metrics);
 
 }  // namespace submap_slam

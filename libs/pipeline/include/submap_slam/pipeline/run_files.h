@@ -9,9 +9,13 @@
 #include <memory>
 #include <string>
 
+#include <submap_slam/pipeline/map_forms.h>
+#include <submap_slam/pipeline/submap_building.h>
+
 namespace submap_slam {
 
 constexpr const char* kSubmapFile = "submaps.rawlog";
+constexpr const char* kLandmarkFile = "landmark_submaps.rawlog";
 constexpr const char* kSpillFile = "submaps.spill";  ///< of the SubmapStore; gone when the run ends
 constexpr const char* kMetricsFile =
     "metrics.json";  ///< written last: a folder that has it holds a finished run
@@ -25,6 +29,17 @@ void refuseFinished(const std::string& submap_file);
  * @param overwrite anew in any case */
 SubmapLogWriter openSubmapFile(const std::string& file, const std::string& log, const Configuration& config,
                                bool overwrite, Reporter& reporter);
+
+/** Opens kSubmapFile and kLandmarkFile in the folder as openSubmapFile does, those that the run writes. */
+SubmapFiles openSubmapFiles(const OutputDirectory& out, const MapForms& forms, const std::string& log,
+                            const Configuration& config, bool overwrite, Reporter& reporter);
+
+/** The same for a file that the user named: that of the only form or of the grids. */
+SubmapFiles openSubmapFiles(const std::string& file, const MapForms& forms, const std::string& log,
+                            const Configuration& config, bool overwrite, Reporter& reporter);
+
+/** `a/b_landmarks.rawlog` for `a/b.rawlog` */
+std::string landmarkFileBeside(const std::string& file);
 
 /** The folder of results; one that holds an unfinished run is taken to finish it. */
 OutputDirectory openFolder(const std::string& folder, bool overwrite);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <submap_slam/core/local_mapper.h>
+#include <submap_slam/landmarks/pole_detector.h>
 #include <submap_slam/mapping/stretch_splitter.h>
 #include <submap_slam/rawlog/rawlog_reader.h>
 
@@ -12,8 +13,10 @@ namespace submap_slam {
 /** Reads a log as stretches. What comes before a damage in the log is delivered like a whole log. */
 class StretchSource {
  public:
-  /** Throws InputError if the log cannot be opened or holds no scan before its end or first damage. */
-  StretchSource(const std::string& log, const ReaderParams& reader, const StretchParams& stretches);
+  /** Throws InputError if the log cannot be opened or holds no scan before its end or first damage.
+   * @param detector if it is enabled, poles in the scans become landmarks */
+  StretchSource(const std::string& log, const ReaderParams& reader, const StretchParams& stretches,
+                const PoleDetectorParams& detector);
 
   /** The next stretch; nothing at the end of the log or of its undamaged part. */
   std::optional<Stretch> next();
@@ -34,6 +37,7 @@ class StretchSource {
 
   RawlogReader reader_;
   StretchSplitter splitter_;
+  PoleDetectorParams detector_;
   std::optional<Frame>
       first_;  ///< read ahead, so that a log without scans is refused before anything is written
   std::size_t frames_ = 0;

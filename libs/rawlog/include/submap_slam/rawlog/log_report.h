@@ -1,11 +1,13 @@
 #pragma once
 
 #include <mrpt/core/Clock.h>
+#include <mrpt/math/TPose2D.h>
 #include <mrpt/math/TPose3D.h>
 
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -51,8 +53,27 @@ struct ScannerReport {
   uint64_t burst_steps = 0;  ///< steps shorter than 10 ms to the scan before of this sensor
 };
 
-/** What a log holds and what is remarkable about it. Counts of frames, scans, beams and odometry steps are
- * those of the frames that were delivered; counts of classes are those of everything that was read. */
+/** The landmark observations of one sensor label. */
+struct LandmarkSensorReport {
+  uint64_t observations = 0;
+  uint64_t empty = 0;  ///< observations without a usable measurement
+  uint64_t measurements = 0;
+  uint64_t with_id = 0;             ///< measurements that tell which landmark it is
+  std::set<uint32_t> ids;           ///< all of them
+  double largest_range = 0;         ///< of a measurement (m)
+  double max_range = 0;             ///< of the sensor, by its first observation (m); 0: not known
+  double sigma_range = 0;           ///< by the first observation (m); 0: not known
+  double sigma_bearing = 0;         ///< by the first observation (rad); 0: not known
+  mrpt::math::TPose2D sensor_pose;  ///< T_robot_sensor, by the first observation (m, rad)
+
+  // measurements that were left out, of everything that was read
+  uint64_t broken = 0;  ///< NaN, infinite or not positive
+  uint64_t near = 0;    ///< nearer than `min_range`
+};
+
+/** What a log holds and what is remarkable about it. Counts of frames, scans, beams, landmarks and odometry
+ * steps are those of the frames that were delivered; counts of classes are those of everything that was read.
+ */
 struct LogReport {
   std::string file;
   uint64_t file_bytes = 0;                  ///< size on disk
@@ -61,7 +82,8 @@ struct LogReport {
   std::map<std::string, uint64_t> classes;  ///< objects by class, also those inside sensory frames
 
   uint64_t frames = 0;
-  std::map<std::string, ScannerReport> scanners;        ///< by sensor label
+  std::map<std::string, ScannerReport> scanners;                 ///< by sensor label
+  std::map<std::string, LandmarkSensorReport> landmark_sensors;  ///< by sensor label
   mrpt::Clock::time_point first_stamp{}, last_stamp{};  ///< of the frames; equal if there is at most one
   double largest_gap_s = 0;                             ///< between consecutive frames
   uint64_t backward_stamps = 0;                         ///< frames stamped earlier than the one before
@@ -77,6 +99,8 @@ struct LogReport {
   uint64_t ignored_odometry = 0;    ///< readings of the second kind where a log has both kinds, or not finite
 
   uint64_t skipped_scans_label = 0;                ///< not in `sensor_labels`
+  uint64_t skipped_landmarks_label = 0;            ///< landmark observations, not in `landmark_labels`
+  uint64_t skipped_landmarks_bad = 0;              ///< landmark observations whose sensor pose makes no sense
   uint64_t skipped_scans_tilted = 0;               ///< scan plane more than 5° off the horizontal
   uint64_t skipped_scans_empty = 0;                ///< no beams
   uint64_t skipped_scans_bad = 0;                  ///< aperture, maximum range or sensor pose make no sense

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <submap_slam/core/joined_map.h>
+#include <submap_slam/core/landmark_submap.h>
 #include <submap_slam/rawlog/resume_state.h>
 #include <submap_slam/rawlog/submap_store.h>
 
@@ -103,8 +104,11 @@ class SubmapLogWriter {
   SubmapLogWriter(SubmapLogWriter&&) noexcept;
   SubmapLogWriter& operator=(SubmapLogWriter&&) noexcept;
 
-  /** Appends the submaps of the next stretch, in order; the list may be empty. */
+  /** Appends the submaps of the next stretch, in order; the list may be empty. A file has submaps of one
+   * form.
+   */
   void appendStretch(const GridSubmaps& submaps);
+  void appendLandmarkStretch(const LandmarkSubmaps& submaps);
 
   /** Marks the file as complete in the side-car. */
   void finish();
@@ -115,6 +119,8 @@ class SubmapLogWriter {
  private:
   explicit SubmapLogWriter(std::string file);
   void start(const ResumeState& run);
+  template <class Submaps>
+  void append(const Submaps& submaps);
 
   std::string file_;
   ResumeState state_;

@@ -1,0 +1,325 @@
+#include "rbpf_filter.h"
+
+#include <submap_slam/core/random_stream.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace submap_slam::landmark_mapping {
+namespace {
+
+using Place = FeatureMap::Place;
+
+/** H Σ Hᵀ + R of a feature whose particle has a known pose. */
+Eigen::Matrix2d givenPose(const Predicted& predicted, const Feature& feature, const Eigen::Matrix2d& noise) {
+  return predicted.by_feature * feature.covariance * predicted.by_feature.transpose() + noise;
+}
+
+/** No pairing farther apart than the root of this can be within `gate`: an upper bound of the covariance of a
+ * located measurement. */
+double reach2(double range, const Eigen::Matrix2d& noise, const Eigen::Matrix3d& pose, double feature_trace,
+              double gate) {
+  const double r2 = range * range;
+  return gate * 1.5 *
+         (noise(0, 0) + r2 * noise(1, 1) + feature_trace + pose(0, 0) + pose(1, 1) + r2 * pose(2, 2));
+}
+
+/** Log-likelihood of a measurement that no feature explains: as that of one at the gate. */
+double unexplained(const Eigen::Matrix2d& noise, double gate) {
+  return -0.5 * (gate + std::log(4 * M_PI * M_PI * noise.determinant()));
+}
+
+bool looksAt(const MeasuredScan& scan, const Predicted& predicted) {
+  constexpr double kShare = 0.9;  // at the borders of its view a sensor may miss a feature
+  return scan.max_range > 0 && scan.field_of_view > 0 && predicted.z[0] <= kShare * scan.max_range &&
+         std::abs(predicted.z[1]) <= kShare * scan.field_of_view / 2;
+}
+
+}  // namespace
+
+RbpfFilter::RbpfFilter(const LandmarkMapperParams& params, uint64_t seed)
+    : association_(params.association),
+      params_(params.particles),
+      improved_proposal_(params.particles.proposal == "fastslam2"),
+      random_(seed),
+      particles_(static_cast<std::size_t>(params.particles.particles)) {
+  nodes_.push_back({Pose::Zero(), 0});  // the first node of no particle
+  for (auto& particle : particles_) {
+    particle.log_weight = -std::log(static_cast<double>(particles_.size()));
+    nodes_.push_back({Pose::Zero(), 0});
+    particle.path = nodes_.size() - 1;
+  }
+}
+
+void RbpfFilter::predict(const MotionStep& step) {
+  for (auto& particle : particles_) {
+    const Composition moved = compose(particle.pose, step.increment);
+    particle.pose = moved.pose;
+    particle.covariance = moved.by_a * particle.covariance * moved.by_a.transpose() +
+                          moved.by_b * step.covariance * moved.by_b.transpose();
+    nodes_.push_back({particle.pose, particle.path});
+    particle.path = nodes_.size() - 1;
+  }
+}
+
+void RbpfFilter::observe(const MeasuredScan& scan) {
+  for (auto& particle : particles_) observe(particle, scan);
+  normalise();
+  depleted_ = effective() < params_.resample_below * static_cast<double>(particles_.size());
+  if (depleted_) resample();
+}
+
+void RbpfFilter::observe(Particle& particle, const MeasuredScan& scan) {
+  if (!scan.measurements.empty() && !improved_proposal_) samplePose(particle);
+  const auto places = visible(particle, scan);
+  const auto origins = associate(particle, scan, places);
+  std::vector<Match> matches;
+  for (std::size_t m = 0; m < origins.size(); ++m) {
+    if (origins[m].kind == Origin::Kind::kFeature)
+      matches.push_back({m, places[origins[m].feature]});
+    else if (!scan.measurements[m].known_id)
+      particle.log_weight += unexplained(scan.measurements[m].value.noise, association_.new_gate);
+  }
+  if (improved_proposal_) {
+    improveProposal(particle, scan, matches);
+    if (!scan.measurements.empty()) samplePose(particle);
+  } else {
+    weigh(particle, scan, matches);
+  }
+  nodes_[particle.path].pose = particle.pose;
+  updateFeatures(particle, scan, matches, places);
+  addNew(particle, scan, origins);
+}
+
+/** Features that the scan may see, and those that it names. */
+std::vector<Place> RbpfFilter::visible(const Particle& particle, const MeasuredScan& scan) const {
+  const Pose sensor = compose(particle.pose, scan.T_robot_sensor).pose;
+  double range = scan.max_range;
+  for (const auto& m : scan.measurements) range = std::max(range, m.value.z[0]);
+  constexpr double kMargin = 10;  // m
+  auto places = particle.features.around(sensor.head<2>(), range + kMargin);
+  const auto named = [&](const Measurement& m) {
+    return !m.known_id || std::any_of(places.begin(), places.end(), [&](const Place& place) {
+      return particle.features.at(place).id == *m.known_id;
+    });
+  };
+  if (!std::all_of(scan.measurements.begin(), scan.measurements.end(), named))
+    places = particle.features.all();
+  return places;
+}
+
+std::vector<Origin> RbpfFilter::associate(const Particle& particle, const MeasuredScan& scan,
+                                          const std::vector<Place>& places) const {
+  std::vector<Pairing> pairings;
+  for (std::size_t m = 0; m < scan.measurements.size(); ++m) {
+    const Measurement& measurement = scan.measurements[m];
+    const RangeBearing& value = measurement.value;
+    const Point located = locate(particle.pose, scan.T_robot_sensor, value.z).feature;
+    for (std::size_t f = 0; f < places.size(); ++f) {
+      const Feature& feature = particle.features.at(places[f]);
+      if (measurement.known_id) {
+        if (feature.known && feature.id == *measurement.known_id) pairings.push_back({m, f, 0});
+        continue;
+      }
+      if ((feature.mean - located).squaredNorm() > reach2(value.z[0], value.noise, particle.covariance,
+                                                          feature.covariance.trace(), association_.new_gate))
+        continue;
+      const Predicted p = predictMeasurement(particle.pose, scan.T_robot_sensor, feature.mean);
+      const Eigen::Matrix2d s =
+          p.by_pose * particle.covariance * p.by_pose.transpose() + givenPose(p, feature, value.noise);
+      const double distance2 = measure(innovationOf(value.z, p.z), s).distance2;
+      if (distance2 <= association_.new_gate) pairings.push_back({m, f, distance2});
+    }
+  }
+  return assign(scan.measurements.size(), std::move(pairings), association_.match_gate);
+}
+
+/** FastSLAM 2: the pose Gaussian takes one measurement after the other; the likelihoods of these innovations
+ * multiply to the particle's weight. */
+void RbpfFilter::improveProposal(Particle& particle, const MeasuredScan& scan,
+                                 const std::vector<Match>& matches) const {
+  Eigen::Matrix3d& covariance = particle.covariance;
+  for (const Match& match : matches) {
+    const Feature& feature = particle.features.at(match.place);
+    const RangeBearing& value = scan.measurements[match.measurement].value;
+    const Predicted p = predictMeasurement(particle.pose, scan.T_robot_sensor, feature.mean);
+    const Eigen::Matrix<double, 3, 2> p_ht = covariance * p.by_pose.transpose();
+    const Eigen::Matrix2d s = p.by_pose * p_ht + givenPose(p, feature, value.noise);
+    const Eigen::Vector2d v = innovationOf(value.z, p.z);
+    particle.log_weight += measure(v, s).logLikelihood();
+    const Eigen::Matrix<double, 3, 2> gain = p_ht * s.inverse();
+    particle.pose += gain * v;
+    covariance -= gain * p_ht.transpose();
+    covariance = (covariance + covariance.transpose()).eval() / 2;
+  }
+}
+
+void RbpfFilter::samplePose(Particle& particle) {
+  Eigen::Vector3d standard;
+  for (double& x : standard) x = standardNormal(random_);
+  const Eigen::LDLT<Eigen::Matrix3d> ldlt(particle.covariance);
+  const Eigen::Vector3d root = ldlt.vectorD().cwiseMax(0).cwiseSqrt();
+  const Eigen::Vector3d correlated = ldlt.matrixL() * root.cwiseProduct(standard);
+  const Eigen::Vector3d offset = ldlt.transpositionsP().transpose() * correlated;
+  particle.pose += offset;
+  particle.covariance.setZero();
+}
+
+/** FastSLAM 1: likelihood of the measurements at the sampled pose. */
+void RbpfFilter::weigh(Particle& particle, const MeasuredScan& scan,
+                       const std::vector<Match>& matches) const {
+  for (const Match& match : matches) {
+    const Feature& feature = particle.features.at(match.place);
+    const RangeBearing& value = scan.measurements[match.measurement].value;
+    const Predicted p = predictMeasurement(particle.pose, scan.T_robot_sensor, feature.mean);
+    particle.log_weight +=
+        measure(innovationOf(value.z, p.z), givenPose(p, feature, value.noise)).logLikelihood();
+  }
+}
+
+/** Kalman update of each matched feature; evidence for these, and against those that should have been seen.
+ */
+void RbpfFilter::updateFeatures(Particle& particle, const MeasuredScan& scan,
+                                const std::vector<Match>& matches, const std::vector<Place>& places) const {
+  std::vector<std::pair<Place, Feature>> changes;
+  for (const Match& match : matches) {
+    Feature feature = particle.features.at(match.place);
+    const RangeBearing& value = scan.measurements[match.measurement].value;
+    const Predicted p = predictMeasurement(particle.pose, scan.T_robot_sensor, feature.mean);
+    const Eigen::Matrix2d p_ht = feature.covariance * p.by_feature.transpose();
+    const Eigen::Matrix2d gain = p_ht * givenPose(p, feature, value.noise).inverse();
+    feature.mean += gain * innovationOf(value.z, p.z);
+    feature.covariance -= gain * p_ht.transpose();
+    feature.covariance = (feature.covariance + feature.covariance.transpose()).eval() / 2;
+    feature.evidence += params_.seen;
+    ++feature.hits;
+    changes.emplace_back(match.place, feature);
+  }
+  const std::size_t seen = changes.size();
+  for (const Place& place : places) {
+    const Feature& feature = particle.features.at(place);
+    const auto is_here = [&place](const auto& change) {
+      return change.first.tile == place.tile && change.first.index == place.index;
+    };
+    const auto end = changes.begin() + static_cast<std::ptrdiff_t>(seen);
+    if (feature.known || params_.missed == 0 || std::any_of(changes.begin(), end, is_here)) continue;
+    if (!looksAt(scan, predictMeasurement(particle.pose, scan.T_robot_sensor, feature.mean))) continue;
+    changes.emplace_back(place, feature);
+    changes.back().second.evidence -= params_.missed;
+  }
+  particle.features.replace(changes);
+}
+
+void RbpfFilter::addNew(Particle& particle, const MeasuredScan& scan,
+                        const std::vector<Origin>& origins) const {
+  for (std::size_t m = 0; m < origins.size(); ++m) {
+    if (origins[m].kind != Origin::Kind::kNew) continue;
+    const Measurement& measurement = scan.measurements[m];
+    const Located located = locate(particle.pose, scan.T_robot_sensor, measurement.value.z);
+    Feature feature;
+    feature.id = measurement.known_id.value_or(measurement.index);
+    feature.known = measurement.known_id.has_value();
+    feature.mean = located.feature;
+    feature.covariance =
+        located.by_pose * particle.covariance * located.by_pose.transpose() +
+        located.by_measurement * measurement.value.noise * located.by_measurement.transpose();
+    feature.evidence = params_.seen;
+    particle.features.insert(feature);
+  }
+}
+
+void RbpfFilter::normalise() {
+  const double most = best().log_weight;
+  double sum = 0;
+  for (const auto& p : particles_) sum += std::exp(p.log_weight - most);
+  for (auto& p : particles_) p.log_weight -= most + std::log(sum);
+}
+
+/** N_eff = 1 / Σ w² */
+double RbpfFilter::effective() const {
+  double squares = 0;
+  for (const auto& p : particles_) squares += std::exp(2 * p.log_weight);
+  return 1 / squares;
+}
+
+/** Systematic: one random offset, equally spaced picks. */
+void RbpfFilter::resample() {
+  const auto count = static_cast<double>(particles_.size());
+  const double first = std::generate_canonical<double, 53>(random_) / count;
+  std::vector<Particle> picked;
+  picked.reserve(particles_.size());
+  double cumulative = std::exp(particles_.front().log_weight);
+  std::size_t source = 0;
+  for (std::size_t k = 0; k < particles_.size(); ++k) {
+    const double at = first + static_cast<double>(k) / count;
+    while (cumulative < at && source + 1 < particles_.size())
+      cumulative += std::exp(particles_[++source].log_weight);
+    picked.push_back(particles_[source]);
+    picked.back().log_weight = -std::log(count);
+  }
+  particles_ = std::move(picked);
+}
+
+const RbpfFilter::Particle& RbpfFilter::best() const {
+  return *std::max_element(particles_.begin(), particles_.end(),
+                           [](const Particle& a, const Particle& b) { return a.log_weight < b.log_weight; });
+}
+
+Eigen::Matrix3d RbpfFilter::poseCovariance() const {
+  const double heading = best().pose[2];
+  Pose mean = Pose::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero(), squares = Eigen::Matrix3d::Zero();
+  for (const auto& p : particles_) {
+    const double w = std::exp(p.log_weight);
+    const Pose pose(p.pose[0], p.pose[1], wrapped(p.pose[2] - heading));
+    mean += w * pose;
+    squares += w * pose * pose.transpose();
+    covariance += w * p.covariance;
+  }
+  return covariance + squares - mean * mean.transpose();
+}
+
+std::size_t RbpfFilter::features() const { return best().features.size(); }
+
+std::vector<Pose> RbpfFilter::pathOf(const Particle& particle) const {
+  std::vector<Pose> path;
+  for (std::size_t node = particle.path; node != 0; node = nodes_[node].before)
+    path.push_back(nodes_[node].pose);
+  std::reverse(path.begin(), path.end());
+  return path;
+}
+
+std::vector<Pose> RbpfFilter::meanPath(const std::vector<std::size_t>& kept) const {
+  const std::vector<Pose> standard = pathOf(best());
+  std::vector<Pose> sum(standard.size(), Pose::Zero());
+  double weights = 0;
+  for (const std::size_t j : kept) {
+    const std::vector<Pose> path = pathOf(particles_[j]);
+    const double w = std::exp(particles_[j].log_weight);
+    weights += w;
+    for (std::size_t k = 0; k < path.size(); ++k) {
+      const Pose& pose = path[k];
+      sum[k] += w * Pose(pose[0], pose[1], standard[k][2] + wrapped(pose[2] - standard[k][2]));
+    }
+  }
+  for (Pose& pose : sum) pose /= weights;
+  return sum;
+}
+
+LandmarkEstimate RbpfFilter::estimate() const {
+  std::vector<MixtureComponent> components;
+  for (const auto& p : particles_) {
+    components.push_back({std::exp(p.log_weight), p.pose, p.covariance, {}});
+    for (const Place& place : p.features.all()) components.back().features.push_back(p.features.at(place));
+  }
+  std::vector<std::size_t> kept;
+  MixtureOptions options;
+  options.min_hits = association_.min_hits;
+  LandmarkEstimate estimate = toGaussian(components, options, kept);
+  estimate.path = meanPath(kept);
+  return estimate;
+}
+
+}  // namespace submap_slam::landmark_mapping

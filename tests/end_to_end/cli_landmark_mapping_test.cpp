@@ -1,0 +1,159 @@
+/** From a log with measured landmarks to a map of them. */
+#include <mrpt/io/CFileGZOutputStream.h>
+#include <mrpt/obs/CObservationBearingRange.h>
+#include <mrpt/obs/CObservationOdometry.h>
+#include <mrpt/poses/CPose2D.h>
+#include <mrpt/serialization/CArchive.h>
+#include <submap_slam/core/landmark_submap.h>
+#include <submap_slam/rawlog/landmark_log.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cli_fixture.h"
+
+namespace submap_slam::testing {
+namespace {
+
+using mrpt::math::TPoint2D;
+using mrpt::math::TPose2D;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::Key;
+
+constexpr int kFrames = 240;
+constexpr double kRadius = 15, kRange = 12;
+
+/** Twice round a circle of 15 m between 24 landmarks, measured without noise, odometry 2 % too short. */
+class CliLandmarkMapping : public CliTest {
+ protected:
+  CliLandmarkMapping() {
+    writeLog(path("ids.rawlog"), true, true);
+    writeLog(path("positions.rawlog"), false, true);
+    writeLog(path("nothing.rawlog"), false, false);
+  }
+
+  nlohmann::json metrics(const std::string& folder) const {
+    return nlohmann::json::parse(contentOf(path(folder + "/metrics.json")));
+  }
+
+  std::vector<std::string> map(const std::string& log, const std::string& out,
+                               std::vector<std::string> more = {}) const {
+    std::vector<std::string> command{"map", path(log), "-o", path(out), "-q"};
+    command.insert(command.end(), more.begin(), more.end());
+    return command;
+  }
+
+ private:
+  static TPose2D poseAt(int k) {
+    const double angle = 4 * M_PI * k / kFrames;
+    return {kRadius * std::sin(angle), kRadius * (1 - std::cos(angle)), angle};
+  }
+
+  static mrpt::obs::CObservationBearingRange measure(const TPose2D& robot, bool ids) {
+    mrpt::obs::CObservationBearingRange out;
+    out.sensorLabel = "TREES";
+    out.maxSensorDistance = static_cast<float>(kRange);
+    out.fieldOfView_yaw = static_cast<float>(M_PI);
+    out.sensor_std_range = 0.05f, out.sensor_std_yaw = 0.01f;
+    for (int i = 0; i < 24; ++i) {
+      const double angle = 2 * M_PI * i / 24, radius = i % 2 == 0 ? 19.0 : 11.0;
+      const TPoint2D landmark(radius * std::sin(angle), kRadius - radius * std::cos(angle));
+      const TPoint2D p = robot.inverseComposePoint(landmark);
+      if (std::hypot(p.x, p.y) > kRange || p.x < 0) continue;
+      mrpt::obs::CObservationBearingRange::TMeasurement m;
+      m.range = static_cast<float>(std::hypot(p.x, p.y));
+      m.yaw = static_cast<float>(std::atan2(p.y, p.x));
+      m.pitch = 0;
+      m.landmarkID = ids ? i : INVALID_LANDMARK_ID;
+      out.sensedData.push_back(m);
+    }
+    return out;
+  }
+
+  static void writeLog(const std::string& file, bool ids, bool landmarks) {
+    mrpt::io::CFileGZOutputStream stream(file);
+    auto archive = mrpt::serialization::archiveFrom(stream);
+    TPose2D odometry;
+    for (int k = 0; k < kFrames; ++k) {
+      if (k > 0) {
+        const TPose2D step = poseAt(k) - poseAt(k - 1);
+        odometry = odometry + TPose2D(0.98 * step.x, step.y, step.phi);
+      }
+      mrpt::obs::CObservationOdometry reading;
+      reading.timestamp = mrpt::Clock::fromDouble(1000 + 0.2 * k);
+      reading.sensorLabel = "ODOMETRY";
+      reading.odometry = mrpt::poses::CPose2D(odometry);
+      archive << reading;
+      auto scan = measure(poseAt(k), ids);
+      if (!landmarks) scan.sensedData.clear();
+      scan.timestamp = reading.timestamp;
+      archive << scan;
+    }
+  }
+};
+
+TEST_F(CliLandmarkMapping, MapsALogWithIds) {
+  succeed(map("ids.rawlog", "out"));
+  const auto results = contentsOf(path("out"));
+  for (const char* name : {"map.png", "map.3Dscene", "landmarks.csv", "association.csv", "trajectory.tum",
+                           "landmark_submaps.rawlog", "metrics.json", "config.ini", "log.txt"})
+    EXPECT_THAT(results, Contains(Key(name)));
+  const auto m = metrics("out");
+  EXPECT_EQ(m["landmarks"], 24);
+  EXPECT_EQ(m["association"], "known");
+  EXPECT_EQ(m["frames"], kFrames);
+  EXPECT_GE(m["submaps"], 3);
+  EXPECT_EQ(lines(results.at("trajectory.tum")), static_cast<std::size_t>(kFrames)) << "every frame";
+  EXPECT_FALSE(readLandmarkSubmaps(path("out/landmark_submaps.rawlog"))[0]->nodes.empty());
+}
+
+TEST_F(CliLandmarkMapping, FindsTheLandmarksAgainWithoutIds) {
+  succeed(map("positions.rawlog", "out"));
+  const auto m = metrics("out");
+  EXPECT_EQ(m["association"], "unknown");
+  EXPECT_EQ(m["landmarks"], 24) << "the second round sees those of the first";
+  EXPECT_FALSE(m.contains("association_wrong")) << "there are no ids to compare with";
+}
+
+TEST_F(CliLandmarkMapping, BuildAndJoinGiveTheSameAsMap) {
+  succeed(map("positions.rawlog", "out"));
+  succeed({"build", path("positions.rawlog"), "-o", path("s.rawlog"), "-q"});
+  succeed({"join", path("s.rawlog"), "-o", path("joined"), "-q"});
+  for (const char* file : {"landmarks.csv", "trajectory.tum", "association.csv", "map.png"})
+    EXPECT_EQ(contentOf(path("out/") + file), contentOf(path("joined/") + file)) << file;
+}
+
+TEST_F(CliLandmarkMapping, AnyNumberOfThreadsAndUpdatesOnTheWayGiveTheSameBytes) {
+  for (const char* log : {"ids.rawlog", "positions.rawlog"}) {
+    const std::string a = std::string("a_") + log, b = std::string("b_") + log;
+    succeed(map(log, a, {"--threads", "1"}));
+    succeed(map(log, b, {"--threads", "3", "--incremental"}));
+    for (const char* file : {"landmarks.csv", "trajectory.tum", "map.png", "landmark_submaps.rawlog"})
+      EXPECT_EQ(contentOf(path(a + "/" + file)), contentOf(path(b + "/" + file))) << log << " " << file;
+    EXPECT_GE(lines(contentOf(path(b + "/updates.csv"))), 3u);
+  }
+}
+
+TEST_F(CliLandmarkMapping, ASingleMapIsOneSubmap) {
+  for (const char* method : {"ekf", "rbpf"}) {
+    succeed(map("ids.rawlog", method,
+                {"--set", "landmark_mapper.single_map=true", "--set",
+                 std::string("landmark_mapper.method=") + method}));
+    EXPECT_EQ(metrics(method)["submaps"], 1);
+    EXPECT_EQ(metrics(method)["landmarks"], 24);
+  }
+}
+
+TEST_F(CliLandmarkMapping, SaysSoWhereThereIsNothingToMap) {
+  expectRefused(run(map("nothing.rawlog", "out", {"--set", "mapping.maps=landmarks"})), "landmark");
+}
+
+TEST_F(CliLandmarkMapping, RefusesEdits) {
+  writeFile(path("edits.txt"), "mask 0");
+  expectRefused(run(map("ids.rawlog", "out", {"--edits", path("edits.txt")})),
+                "--edits: is for grid submaps");
+}
+
+}  // namespace
+}  // namespace submap_slam::testing
