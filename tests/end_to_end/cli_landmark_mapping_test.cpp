@@ -1,5 +1,7 @@
 /** From a log with measured landmarks to a map of them. */
+#include <mrpt/io/CFileGZInputStream.h>
 #include <mrpt/io/CFileGZOutputStream.h>
+#include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservationBearingRange.h>
 #include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/poses/CPose2D.h>
@@ -8,6 +10,8 @@
 #include <submap_slam/rawlog/landmark_log.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "cli_fixture.h"
@@ -143,6 +147,57 @@ TEST_F(CliLandmarkMapping, ASingleMapIsOneSubmap) {
     EXPECT_EQ(metrics(method)["submaps"], 1);
     EXPECT_EQ(metrics(method)["landmarks"], 24);
   }
+}
+
+/** The example loop with landmarks in a lattice of 6 m, measured from the true poses without noise. */
+void addLandmarks(const std::string& log, const std::string& truth, const std::string& out) {
+  std::ifstream poses(truth);
+  mrpt::io::CFileGZInputStream from(log);
+  mrpt::io::CFileGZOutputStream to(out);
+  auto reader = mrpt::serialization::archiveFrom(from), writer = mrpt::serialization::archiveFrom(to);
+  for (double t, x, y, z, qx, qy, qz, qw; poses >> t >> x >> y >> z >> qx >> qy >> qz >> qw;) {
+    mrpt::serialization::CSerializable::Ptr object;
+    do {
+      object = reader.ReadObject();
+      writer << *object;
+    } while (!std::dynamic_pointer_cast<mrpt::obs::CObservation2DRangeScan>(object));
+    mrpt::obs::CObservationBearingRange seen;
+    seen.timestamp = std::dynamic_pointer_cast<mrpt::obs::CObservation>(object)->timestamp;
+    seen.sensorLabel = "POSTS";
+    seen.maxSensorDistance = 8, seen.fieldOfView_yaw = static_cast<float>(M_PI);
+    seen.sensor_std_range = 0.05f, seen.sensor_std_yaw = 0.01f;
+    const TPose2D robot(x, y, 2 * std::atan2(qz, qw));
+    for (int i = -10; i <= 10; ++i)
+      for (int j = -10; j <= 10; ++j) {
+        const TPoint2D p = robot.inverseComposePoint(TPoint2D(6.0 * i, 6.0 * j + 0.4 * i));
+        if (std::hypot(p.x, p.y) > 8 || p.x < 0) continue;
+        mrpt::obs::CObservationBearingRange::TMeasurement m;
+        m.range = static_cast<float>(std::hypot(p.x, p.y));
+        m.yaw = static_cast<float>(std::atan2(p.y, p.x));
+        m.pitch = 0;
+        m.landmarkID = INVALID_LANDMARK_ID;
+        seen.sensedData.push_back(m);
+      }
+    writer << seen;
+  }
+}
+
+TEST_F(CliLandmarkMapping, GridsAndLandmarksAlongOnePathAgree) {
+  addLandmarks(log("loop.rawlog"), log("loop.truth.tum"), path("both.rawlog"));
+  succeed(map("both.rawlog", "out", {"--set", "mapping.maps=grid, landmarks"}));
+  const auto results = contentsOf(path("out"));
+  for (const char* name : {"map.png", "trajectory.tum", "submaps.rawlog", "landmark_map.png", "landmarks.csv",
+                           "landmark_trajectory.tum", "landmark_submaps.rawlog"})
+    EXPECT_THAT(results, Contains(Key(name)));
+  const auto m = metrics("out");
+  EXPECT_EQ(m["submaps"], m["landmark_submaps"]) << "the same stretches";
+  EXPECT_EQ(lines(results.at("trajectory.tum")), lines(results.at("landmark_trajectory.tum")));
+  EXPECT_GT(m["landmark_landmarks"], 20);
+  EXPECT_LT(m["landmark_path_difference_m"], 0.1);
+  EXPECT_LT(m["landmark_path_difference_deg"], 1.0);
+  // Without asking, the log is mapped by its laser.
+  succeed({"build", path("both.rawlog"), "-o", path("s.rawlog"), "-q"});
+  EXPECT_FALSE(std::filesystem::exists(path("s_landmarks.rawlog")));
 }
 
 TEST_F(CliLandmarkMapping, SaysSoWhereThereIsNothingToMap) {

@@ -34,7 +34,9 @@ TEST(LandmarkMapper, SubmapsOfAStretchHangTogether) {
     requireUsable(submap);
     EXPECT_EQ(submap.nodes.front().pose, mrpt::math::TPose2D());
     EXPECT_EQ(submap.timestamp, submap.nodes.front().stamp);
-    if (k + 1 < submaps.size()) EXPECT_EQ(submap.end_stamp, submaps[k + 1]->timestamp);
+    if (k + 1 < submaps.size()) {
+      EXPECT_EQ(submap.end_stamp, submaps[k + 1]->timestamp);
+    }
     EXPECT_TRUE(submap.ids_known);
     end = end + submap.end_pose;
   }
