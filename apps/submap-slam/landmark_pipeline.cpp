@@ -2,19 +2,21 @@
 
 #include <fmt/format.h>
 #include <submap_slam/core/errors.h>
-#include <submap_slam/output/json_file.h>
 #include <submap_slam/output/landmark_files.h>
 #include <submap_slam/output/landmark_image.h>
 #include <submap_slam/output/trajectory_file.h>
 #include <submap_slam/rawlog/landmark_log.h>
+#include <submap_slam/report/run_report.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
+#include "finish_run.h"
 #include "results.h"
 #include "run_files.h"
 #include "stop_signal.h"
+#include "summary.h"
 
 namespace submap_slam {
 namespace {
@@ -78,21 +80,22 @@ RunSummary joinLandmarkFile(const std::string& submap_file, const std::string& f
   const auto joiner = config.landmarkJoiner();
   const LandmarkSubmaps submaps = readLandmarkSubmaps(submap_file);
   const OutputDirectory out(folder, overwrite);
-  addTime(summary.metrics, "read_", timer);
+  addTimedStage(summary.metrics, "read", timer);
 
   const StageTimer join_timer;
   reporter.log(fmt::format("{} submaps", submaps.size()));
   const JoinedLandmarks joined = runJoiner(*joiner, submaps, reporter, summary.interrupted);
   addTime(summary.metrics, "join_", join_timer);
+  addStage(summary.metrics, join_timer.record(joiner->name()));
   summary.failed = joined.status == JoinStatus::kFailed;
   addLandmarkMetrics(summary.metrics, submaps, joined);
 
   const StageTimer write_timer;
   writeLandmarkResults(out, submaps, joined);
   writeRunRecord(out, config, reporter.logLines());
-  addTime(summary.metrics, "write_", write_timer);
-  addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
-  writeJson(out.file(kMetricsFile), summary.metrics);
+  addTimedStage(summary.metrics, "write", write_timer);
+  finishRun({submap_file, out, config, reporter, timer}, summary.metrics,
+            [&](const RunRecord& record) { return runReport(submaps, joined, record); });
   return summary;
 }
 
@@ -100,11 +103,11 @@ std::string landmarkSummary(const RunSummary& summary, const std::string& folder
   const Metrics& m = summary.metrics;
   return fmt::format(
       "{} submaps with {} features, {} landmarks\njoined: {} ({}), objective {:.6g}\n"
-      "{:.1f} s, {:.1f} s CPU, {:.0f} MB\nmap: {}",
+      "{:.1f} s, {:.1f} s CPU, {:.0f} MB\nmap: {}{}",
       m["submaps"].get<int>(), m["features"].get<int>(), m["landmarks"].get<int>(),
       m["join_status"].get<std::string>(), m["join_reason"].get<std::string>(), m["objective"].get<double>(),
       m["wall_s"].get<double>(), m["cpu_s"].get<double>(), m["peak_memory_mb"].get<double>(),
-      (std::filesystem::path(folder) / "map.png").string());
+      (std::filesystem::path(folder) / "map.png").string(), reportLine(m, folder));
 }
 
 }  // namespace submap_slam

@@ -33,6 +33,7 @@ int run(CLI::App& app, int argc, char** argv) {
   addJoinCommand(app, exit_code);
   addEvalCommand(app, exit_code);
   addCheckCommand(app, exit_code);
+  addCompareCommand(app, exit_code);
   addInfoCommand(app, exit_code);
   addSimulateCommand(app, exit_code);
   addExperimentCommand(app, exit_code);

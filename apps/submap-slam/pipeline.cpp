@@ -4,8 +4,8 @@
 #include <submap_slam/core/errors.h>
 #include <submap_slam/mapping/grid_mapper.h>
 #include <submap_slam/mapping/node_refinement.h>
-#include <submap_slam/output/json_file.h>
 #include <submap_slam/output/text_file.h>
+#include <submap_slam/report/run_report.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_pipeline.h>
 
@@ -13,6 +13,7 @@
 #include <memory>
 
 #include "edited_submaps.h"
+#include "finish_run.h"
 #include "joining.h"
 #include "map_updates.h"
 #include "metrics.h"
@@ -68,19 +69,24 @@ void logEdits(const Edits& edits, const JoinerChain& joiners, Reporter& reporter
 void refineNodesAndJoin(GridSubmaps& submaps, JoinOutcome& outcome, const Joining& joining,
                         const Configuration& config, SubmapStore& store, Reporter& reporter) {
   for (int round = 1; round <= config.node_refinement.rounds && !outcome.stopped; ++round) {
+    const StageTimer timer;
     reporter.progress(fmt::format("refining nodes, round {}", round), 0);
     RefinedSubmaps refined = refineNodes(submaps, outcome.map, config.mapper, config.node_refinement,
                                          [&](GridSubmap& submap) { store.takeOver(submap); });
     reporter.log(fmt::format("nodes refined, round {}: moved by {:.4f} m at the mean, {:.4f} m at most",
                              round, refined.mean_move, refined.max_move));
     submaps = std::move(refined.submaps);
+    std::vector<StageRecord> stages = std::move(outcome.stages);
+    stages.push_back(timer.record("refine nodes"));
     outcome = joining.joinAgain(submaps, std::move(refined.joined), reporter);
+    outcome.stages.insert(outcome.stages.begin(), stages.begin(), stages.end());
   }
 }
 
-/** Joins and writes everything but metrics.json. */
-void joinAndWrite(const EditedSubmaps& submaps, Joining& joining, const OutputDirectory& out,
-                  const Configuration& config, SubmapStore& store, Reporter& reporter, RunSummary& summary) {
+/** Joins and writes everything. */
+void joinAndWrite(const Run& run, const EditedSubmaps& submaps, Joining& joining, SubmapStore& store,
+                  RunSummary& summary) {
+  const auto& [input, out, config, reporter, run_timer] = run;
   checkEdits(submaps.edits(), submaps.all());
   Metrics& metrics = summary.metrics;
   const StageTimer join_timer;
@@ -94,6 +100,7 @@ void joinAndWrite(const EditedSubmaps& submaps, Joining& joining, const OutputDi
   summary.interrupted = outcome.stopped;
   addJoinMetrics(metrics, submaps.all(), joined);
   addTime(metrics, "join_", join_timer);
+  for (const StageRecord& stage : outcome.stages) addStage(metrics, stage);
 
   const StageTimer write_timer;
   writeResults(out, shown, joined);
@@ -101,7 +108,9 @@ void joinAndWrite(const EditedSubmaps& submaps, Joining& joining, const OutputDi
   addProgressMetrics(metrics, progress);
   writeText(out.file("submaps.csv"), progressCsv(progress));
   writeRunRecord(out, config, reporter.logLines());
-  addTime(metrics, "write_", write_timer);
+  addTimedStage(metrics, "write", write_timer);
+  finishRun(run, metrics,
+            [&](const RunRecord& record) { return runReport(shown, joined, progress, record); });
 }
 
 }  // namespace
@@ -126,7 +135,7 @@ RunSummary mapRawlog(const std::string& log, const std::string& folder, bool ove
     show = [&](double fraction_read) { updates.update(writer.state().submaps_done, fraction_read); };
   summary.interrupted = !buildSubmaps(source, *mapper, writer, reporter, show);
   summary.submaps_in_map = updates.submapsInMap();
-  addTime(summary.metrics, "build_", timer);
+  addTimedStage(summary.metrics, "build", timer);
   reportLog(source, reporter);
   summary.damaged = !source.damage().empty();
   if (summary.interrupted) return summary;
@@ -134,9 +143,7 @@ RunSummary mapRawlog(const std::string& log, const std::string& folder, bool ove
   addLogMetrics(summary.metrics, source.report());
   submaps.add(follower.readNew());
   requireSubmaps(out.file(kSubmapFile));
-  joinAndWrite(submaps, joining, out, config, *store, reporter, summary);
-  addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
-  writeJson(out.file(kMetricsFile), summary.metrics);
+  joinAndWrite({log, out, config, reporter, timer}, submaps, joining, *store, summary);
   return summary;
 }
 
@@ -170,9 +177,7 @@ RunSummary joinFile(const std::string& submap_file, const std::string& folder, b
   submaps.add(read.submaps);
   summary.damaged = !read.damage.empty();
   if (summary.damaged) reporter.warning(read.damage + "; the submaps before it are joined");
-  joinAndWrite(submaps, joining, out, config, *store, reporter, summary);
-  addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
-  writeJson(out.file(kMetricsFile), summary.metrics);
+  joinAndWrite({submap_file, out, config, reporter, timer}, submaps, joining, *store, summary);
   return summary;
 }
 

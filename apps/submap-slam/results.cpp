@@ -33,11 +33,15 @@ void writeResults(const OutputDirectory& out, const GridSubmaps& submaps, const 
   writeScene(out.file("map.3Dscene"), joined.map, trajectoryOf(submaps, joined), joined.frames);
 }
 
-void writeRunRecord(const OutputDirectory& out, const Configuration& config,
-                    const std::vector<std::string>& log) {
+std::string iniOf(const Configuration& config) {
   std::ostringstream ini;
   config.table.writeIni(ini);
-  writeText(out.file("config.ini"), ini.str());
+  return ini.str();
+}
+
+void writeRunRecord(const OutputDirectory& out, const Configuration& config,
+                    const std::vector<std::string>& log) {
+  writeText(out.file("config.ini"), iniOf(config));
   writeText(out.file("log.txt"), fmt::format("{}\n", fmt::join(log, "\n")));
 }
 

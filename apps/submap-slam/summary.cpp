@@ -39,6 +39,10 @@ std::string mapSoFar(std::size_t submaps, const std::string& folder) {
 
 }  // namespace
 
+std::string reportLine(const Metrics& metrics, const std::string& folder) {
+  return metrics.contains("report_wall_s") ? "\nreport: " + inFolder(folder, kReportFile) : "";
+}
+
 std::string mapSummary(const RunSummary& summary, const std::string& folder) {
   const Metrics& m = summary.metrics;
   if (!m.contains("join_status"))
@@ -53,7 +57,7 @@ std::string mapSummary(const RunSummary& summary, const std::string& folder) {
         "stopped while joining, the map is the best until then; to join again: submap-slam join {} -o "
         "OUTDIR\n",
         inFolder(folder, kSubmapFile));
-  return text + "map: " + inFolder(folder, "map.png");
+  return text + "map: " + inFolder(folder, "map.png") + reportLine(m, folder);
 }
 
 std::string buildSummary(const RunSummary& summary, const std::string& submap_file) {

@@ -10,6 +10,9 @@ namespace submap_slam {
 /** What `map` and `join` say at their end: where the map is and the main figures, or how to go on. */
 std::string mapSummary(const RunSummary& summary, const std::string& folder);
 
+/** The line that says where the report is; nothing if there is none. */
+std::string reportLine(const Metrics& metrics, const std::string& folder);
+
 /** The same for `build`. */
 std::string buildSummary(const RunSummary& summary, const std::string& submap_file);
 
