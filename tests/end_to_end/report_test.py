@@ -77,7 +77,7 @@ def check_constraints(driver):
         box = label.find_element(By.TAG_NAME, "input")
         if not box.is_selected():
             label.click()
-    expect(len(rows(driver, "constraints")) == min(sum(counts.values()), 200), "not every constraint is listed")
+    expect(len(rows(driver, "constraints")) == min(sum(counts.values()), 100), "not every constraint is listed")
     expect(counts["chain"] > 0, "there is no chain of submaps")
     heading = driver.find_element(By.CSS_SELECTOR, "#constraints th:first-child button")
     heading.click()

@@ -52,7 +52,8 @@ TEST(Comparison, DifferencesAreThoseByHand) {
   Trajectory moved = sampleTrajectory();
   moved[1].pose.x += 0.3, moved[1].pose.y += 0.4;
   moved[2].pose.phi += 0.1;
-  const Comparison c = compareRuns({runWith(sampleTrajectory(), Json::object()), runWith(moved, Json::object())}, {"a", "b"});
+  const Comparison c =
+      compareRuns({runWith(sampleTrajectory(), Json::object()), runWith(moved, Json::object())}, {"a", "b"});
   EXPECT_NEAR(rowOf(c.tables[2], "apart_max_m").values[1].get<double>(), 0.5, 1e-9);
   EXPECT_NEAR(rowOf(c.tables[2], "apart_mean_m").values[1].get<double>(), 0.5 / 3, 1e-9);
   EXPECT_NEAR(rowOf(c.tables[2], "turned_max_deg").values[1].get<double>(), 0.1 * 180 / M_PI, 1e-9);
@@ -61,7 +62,8 @@ TEST(Comparison, DifferencesAreThoseByHand) {
 TEST(Comparison, RunsOfOtherTimesKeepTheirFrames) {
   Trajectory later = sampleTrajectory();
   for (auto& p : later) p.stamp += std::chrono::hours(1);
-  const Comparison c = compareRuns({runWith(sampleTrajectory(), Json::object()), runWith(later, Json::object())}, {"a", "b"});
+  const Comparison c =
+      compareRuns({runWith(sampleTrajectory(), Json::object()), runWith(later, Json::object())}, {"a", "b"});
   EXPECT_EQ(c.seen[1].T_ref_w, mrpt::math::TPose2D());
   EXPECT_EQ(rowOf(c.tables[2], "common_poses").values[1], 0);
   EXPECT_THROW(rowOf(c.tables[2], "apart_mean_m"), std::out_of_range);
@@ -80,7 +82,7 @@ TEST(Comparison, TablesHoldWhatAnyRunHas) {
   EXPECT_EQ(rowOf(c.tables[0], "landmarks").values, (std::vector<Json>{nullptr, 5}));
   EXPECT_THROW(rowOf(c.tables[0], "cpu_s"), std::out_of_range) << "is in the next table";
   EXPECT_EQ(rowOf(c.tables[1], "cpu_s").values, (std::vector<Json>{1.5, nullptr}));
-  EXPECT_EQ(rowOf(c.tables[1], "build: cpu_s").values, (std::vector<Json>{1.0, nullptr}));
+  EXPECT_EQ(rowOf(c.tables[1], "build_cpu_s").values, (std::vector<Json>{1.0, nullptr}));
   ASSERT_EQ(c.tables[3].rows.size(), 2u);
   EXPECT_EQ(rowOf(c.tables[3], "run.seed").values, (std::vector<Json>{"1", "7"}));
   EXPECT_EQ(rowOf(c.tables[3], "own.key").values, (std::vector<Json>{nullptr, ""}));
@@ -111,7 +113,8 @@ TEST(Comparison, CsvKeepsEveryBit) {
 }
 
 TEST(Comparison, PageHoldsPathsInTheFrameOfTheFirstRun) {
-  const std::vector<RunFolder> runs{runWith(sampleTrajectory(), Json::object()), runWith(seenFrom({3, -1, 0.7}), Json::object())};
+  const std::vector<RunFolder> runs{runWith(sampleTrajectory(), Json::object()),
+                                    runWith(seenFrom({3, -1, 0.7}), Json::object())};
   const Json page = comparisonPage(runs, compareRuns(runs, {"a", "b"}));
   EXPECT_EQ(page["kind"], "comparison");
   EXPECT_EQ(page["runs"][0]["path"], page["runs"][1]["path"]);

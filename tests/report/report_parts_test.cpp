@@ -5,13 +5,15 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <set>
+#include <vector>
 
 namespace submap_slam {
 namespace {
 
 TEST(SigmaEllipse, AgreesWithAnEigensolver) {
-  for (const Eigen::Vector3d c :
-       {Eigen::Vector3d(0.04, 0.01, 0.02), {0.01, -0.015, 0.04}, {1, 0, 4}, {4, 0, 1}}) {
+  const std::vector<Eigen::Vector3d> covariances{
+      {0.04, 0.01, 0.02}, {0.01, -0.015, 0.04}, {1, 0, 4}, {4, 0, 1}};
+  for (const Eigen::Vector3d& c : covariances) {
     Eigen::Matrix2d cov;
     cov << c(0), c(1), c(1), c(2);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(cov);

@@ -50,6 +50,10 @@ ComparisonTable figures(const std::vector<RunFolder>& runs) {
   return {"Figures", rows.take()};
 }
 
+bool isNamedStage(const Json& stage) {
+  return stage.is_object() && stage.contains("name") && stage["name"].is_string() && stage.contains("cpu_s");
+}
+
 ComparisonTable resources(const std::vector<RunFolder>& runs) {
   RowCollector rows(runs.size());
   for (std::size_t k = 0; k < runs.size(); ++k) {
@@ -57,8 +61,8 @@ ComparisonTable resources(const std::vector<RunFolder>& runs) {
       if (value.is_number() && isResource(key)) rows.set(k, key, value);
     const Json stages = runs[k].metrics.value("stages", Json::array());
     for (const Json& stage : stages)
-      if (stage.is_object() && stage.contains("name") && stage.contains("cpu_s"))
-        rows.set(k, stage["name"].get<std::string>() + ": cpu_s", stage["cpu_s"]);
+      if (isNamedStage(stage) && !runs[k].metrics.contains(stage["name"].get<std::string>() + "_cpu_s"))
+        rows.set(k, stage["name"].get<std::string>() + "_cpu_s", stage["cpu_s"]);
   }
   return {"Time and memory", rows.take()};
 }

@@ -41,8 +41,9 @@ function choice(label, options, chosen, onChange) {
   return element('label', {}, label, select);
 }
 
-function swatch(color, dashed) {
-  const mark = element('span', { class: dashed ? 'swatch dashed' : 'swatch' });
+/** A sample of how something is drawn: 'line', 'dashed' or 'dot'. */
+function swatch(color, form = 'line') {
+  const mark = element('span', { class: `swatch ${form}` });
   mark.style.color = color;
   return mark;
 }

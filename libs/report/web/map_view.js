@@ -55,14 +55,16 @@ class MapView {
   }
 }
 
-/** Lines through points, one for each run of points whose colour is the same. `colorAt(i)`: of the way to point i. */
-function coloredPath(x, y, colorAt) {
+/** Lines through points, one for each run of points of the same shade.
+ * @param shades one for each point: that of the way to it
+ * @param colorOf colour of a shade */
+function coloredPath(x, y, shades, colorOf) {
   const group = L.layerGroup();
   for (let i = 1, first = 0; i < x.length; ++i) {
-    if (i + 1 < x.length && colorAt(i + 1) === colorAt(first + 1)) continue;
+    if (i + 1 < x.length && shades[i + 1] === shades[first + 1]) continue;
     const points = [];
     for (let k = first; k <= i; ++k) points.push([y[k], x[k]]);
-    L.polyline(points, { color: colorAt(first + 1), weight: 2.5, interactive: false, smoothFactor: 0.5 }).addTo(group);
+    L.polyline(points, { color: colorOf(shades[i]), weight: 2.5, interactive: false, smoothFactor: 0.5 }).addTo(group);
     first = i;
   }
   return group;

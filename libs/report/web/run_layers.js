@@ -15,8 +15,8 @@ function trajectoryColorings(trajectory) {
 }
 
 function trajectoryLayer(trajectory, coloring) {
-  const shade = (i) => Math.round(kColorSteps * coloring.values[i] / coloring.max);
-  return coloredPath(trajectory.x, trajectory.y, (i) => scaleColor(coloring.scale, shade(i) / kColorSteps));
+  const shades = coloring.values.map((value) => Math.round(kColorSteps * value / coloring.max));
+  return coloredPath(trajectory.x, trajectory.y, shades, (shade) => scaleColor(coloring.scale, shade / kColorSteps));
 }
 
 function outlineLayer(submaps) {
@@ -72,7 +72,7 @@ function constraintKind(c) {
 }
 
 const kConstraintStyles = {
-  accepted: { color: kAccepted, weight: 1.8, opacity: 0.85 },
+  accepted: { color: kAccepted, weight: 1.3, opacity: 0.55 },
   rejected: { color: kRejected, weight: 1.3, opacity: 0.6, dashArray: '5 4' },
   chain: { color: kChain, weight: 1.5, opacity: 0.9 },
 };

@@ -19,7 +19,7 @@ class RunMap {
   }
 
   howToRead() {
-    const shown = this.data.form === 'grid' ? 'White is free, dark is occupied, what nobody saw is the background'
+    const shown = this.data.form === 'grid' ? 'Lines are walls, the plain areas between them are free, and nobody saw what is left as background'
       : 'Green dots are landmarks';
     return `${shown}; drag to move, turn the wheel or pinch to zoom, point at anything to see what it is.`;
   }
@@ -29,11 +29,11 @@ class RunMap {
   addLayers() {
     const { data } = this;
     if (data.map) this.switchable('map', this.view.addPicture(data.map), true);
-    if (data.landmarks) this.switchable('landmarks', landmarkLayer(data.landmarks), true, swatch(kAccepted));
+    if (data.landmarks) this.switchable('landmarks', landmarkLayer(data.landmarks), true, swatch(kAccepted, 'dot'));
     if (data.form === 'grid') this.switchable('outlines', outlineLayer(data.submaps), false, swatch(kFrame));
     this.addConstraintLayers();
     this.addTrajectory();
-    this.switchable('frames', frameLayer(data.submaps), true, swatch(kFrame));
+    this.switchable('frames', frameLayer(data.submaps), true, swatch(kFrame, 'dot'));
     this.addEllipses();
   }
 
@@ -47,7 +47,7 @@ class RunMap {
     if (!constraints) return;
     for (const [kind, label, visible] of [['chain', 'chain', false], ['rejected', 'rejected loops', false], ['accepted', 'accepted loops', true]]) {
       const layer = constraintLayer(constraints, submaps, kind, (c, clicked) => this.onConstraint(c, clicked));
-      this.switchable(label, layer, visible, swatch(kConstraintStyles[kind].color, kind === 'rejected'));
+      this.switchable(label, layer, visible, swatch(kConstraintStyles[kind].color, kind === 'rejected' ? 'dashed' : 'line'));
     }
   }
 

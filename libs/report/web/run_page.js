@@ -170,7 +170,7 @@ function addMessages(messages) {
 
 function showRun(data) {
   const m = data.metrics;
-  addHead(data.input, `Map made by submap-slam ${m.version}, seed ${m.seed}. Joined: ${m.join_status} (${m.join_reason}).`, runTiles(data));
+  addHead(data.input, `Map made by submap-slam ${m.version}, seed ${m.seed}. Joined: ${m.join_status}${m.join_reason ? ` (${m.join_reason})` : ''}.`, runTiles(data));
   addWarnings(m.warnings);
   const map = new RunMap(data);
   addConstraints(data, map);

@@ -1,6 +1,6 @@
 // Tables that can be sorted by their headings and shortened.
 
-const kRowsAtFirst = 200;
+const kRowsAtFirst = 100;
 
 function cellOf(column, row) {
   const content = column.show ? column.show(row) : row[column.key];
