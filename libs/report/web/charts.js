@@ -32,16 +32,29 @@ function chartOptions(spec, width) {
 
 function wholeNumbers(_, ticks) { return ticks.map((t) => (Number.isInteger(t) ? String(t) : '')); }
 
+/** What is smaller is rounding; charts show it as zero, or leave it out where the scale is logarithmic. */
+const kRounding = 1e-12;
+
+/** Columns of values of a chart, and whether its scale can be logarithmic. */
+function plottedValues(spec) {
+  const log = Boolean(spec.log) && spec.lines.some((line) => line.values.some((v) => v > kRounding));
+  const plotted = (v) => {
+    if (v === null || v === undefined || Math.abs(v) > kRounding) return v;
+    return log ? null : 0;
+  };
+  return { log, columns: spec.lines.map((line) => line.values.map(plotted)) };
+}
+
 /** Adds a chart to a panel.
  * @param spec x: values; lines: [{label, color, values, …}]; xLabel, yLabel; log: logarithmic y */
 function addChart(panel, spec) {
   const box = element('div', { class: 'chart' });
   panel.append(box);
   let plot;
-  const values = (line) => (spec.log ? line.values.map((v) => (v > 0 ? v : null)) : line.values);
+  const { log, columns } = plottedValues(spec);
   followScheme(() => {
     if (plot) plot.destroy();
-    plot = new uPlot(chartOptions(spec, box.clientWidth), [spec.x, ...spec.lines.map(values)], box);
+    plot = new uPlot(chartOptions({ ...spec, log }, box.clientWidth), [spec.x, ...columns], box);
   });
   new ResizeObserver(() => {
     if (box.clientWidth > 0 && box.clientWidth !== plot.width)
