@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <submap_slam/core/version.h>
+#include <submap_slam/output/csv_text.h>
 #include <submap_slam/output/text_file.h>
 
 #include <algorithm>
@@ -73,13 +74,6 @@ std::string markdown(const Experiment& experiment, const std::vector<ExperimentR
                             fmt::join(experiment.seeds, ", "), version(), fmt::join(buildsOf(rows), " and "));
 }
 
-/** RFC 4180. */
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + '"';
-}
-
 std::string csv(const Experiment& experiment, const std::vector<ExperimentRow>& rows) {
   std::string text = "data,setting,runs";
   for (const auto& column : experiment.columns) text += fmt::format(",{0}_mean,{0}_std", column.key);
@@ -90,7 +84,7 @@ std::string csv(const Experiment& experiment, const std::vector<ExperimentRow>& 
       const ErrorStatistics s = row.statistics(column.key);
       text += s.count == 0 ? ",," : fmt::format(",{},{}", s.mean, s.std);
     }
-    text += "," + (row.note.empty() ? "" : quoted(row.note)) + "\n";
+    text += "," + (row.note.empty() ? "" : quotedCsv(row.note)) + "\n";
   }
   return text;
 }

@@ -34,6 +34,7 @@ int run(CLI::App& app, int argc, char** argv) {
   addEvalCommand(app, exit_code);
   addCheckCommand(app, exit_code);
   addImportCommand(app, exit_code);
+  addCompareCommand(app, exit_code);
   addInfoCommand(app, exit_code);
   addSimulateCommand(app, exit_code);
   addExperimentCommand(app, exit_code);

@@ -36,6 +36,11 @@ std::string mapSoFar(std::size_t submaps, const std::string& folder) {
   return fmt::format("\nmap of the first {} submaps: {}", submaps, inFolder(folder, "map.png"));
 }
 
+/** The line that says where the report is; nothing if there is none. */
+std::string reportLine(const Metrics& metrics, const std::string& folder) {
+  return metrics.contains("report_wall_s") ? "\nreport: " + inFolder(folder, kReportFile) : "";
+}
+
 }  // namespace
 
 std::string mapSummary(const RunSummary& summary, const std::string& folder) {
@@ -52,7 +57,16 @@ std::string mapSummary(const RunSummary& summary, const std::string& folder) {
         "stopped while joining, the map is the best until then; to join again: submap-slam join {} -o "
         "OUTDIR\n",
         inFolder(folder, kSubmapFile));
-  return text + "map: " + inFolder(folder, "map.png");
+  return text + "map: " + inFolder(folder, "map.png") + reportLine(m, folder);
+}
+
+std::string landmarkSummary(const RunSummary& summary, const std::string& folder) {
+  const Metrics& m = summary.metrics;
+  return fmt::format("{} submaps with {} features, {} landmarks\njoined: {} ({}), objective {:.6g}\n{}\nmap: {}{}",
+                     m["submaps"].get<int>(), m["features"].get<int>(), m["landmarks"].get<int>(),
+                     m["join_status"].get<std::string>(), m["join_reason"].get<std::string>(),
+                     m["objective"].get<double>(), resources(m), inFolder(folder, "map.png"),
+                     reportLine(m, folder));
 }
 
 std::string buildSummary(const RunSummary& summary, const std::string& submap_file) {

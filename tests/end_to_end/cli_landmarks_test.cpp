@@ -69,7 +69,7 @@ TEST_F(CliLandmarks, JoinWritesEveryResultAndSaysWhere) {
   EXPECT_THAT(outcome.err, HasSubstr("100 %"));
   const auto results = contentsOf(path("out"));
   for (const char* name : {"map.png", "map.3Dscene", "landmarks.csv", "association.csv", "trajectory.tum",
-                           "metrics.json", "config.ini", "log.txt"})
+                           "metrics.json", "report.html", "config.ini", "log.txt"})
     EXPECT_THAT(results, ::testing::Contains(Key(name)));
   EXPECT_EQ(lines(results.at("landmarks.csv")), 1u + 8u);
   EXPECT_EQ(lines(results.at("association.csv")), 1u + 24u);

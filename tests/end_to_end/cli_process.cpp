@@ -1,6 +1,7 @@
 #include "cli_process.h"
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -59,6 +60,16 @@ std::map<std::string, std::string> contentsOf(const std::filesystem::path& folde
   std::map<std::string, std::string> contents;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (entry.is_regular_file()) contents[entry.path().filename().string()] = contentOf(entry.path());
+  return contents;
+}
+
+std::map<std::string, std::string> reproducibleResults(const std::filesystem::path& folder) {
+  auto contents = contentsOf(folder);
+  EXPECT_EQ(contents.erase("metrics.json"), 1u);
+  std::string& report = contents["report.html"];
+  const std::size_t begin = report.find("\n\"metrics\":{");
+  EXPECT_NE(begin, std::string::npos);
+  report.erase(begin, report.find('\n', begin + 1) - begin);
   return contents;
 }
 

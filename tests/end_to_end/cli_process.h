@@ -38,6 +38,10 @@ void writeFile(const std::filesystem::path& file, const std::string& content);
 /** Content of every regular file of a folder, by name. */
 std::map<std::string, std::string> contentsOf(const std::filesystem::path& folder);
 
+/** What a finished run wrote and must be the same bytes for equal runs: contentsOf without times, which are
+ * in metrics.json and in one line of report.html. */
+std::map<std::string, std::string> reproducibleResults(const std::filesystem::path& folder);
+
 std::size_t lines(const std::string& text);
 
 }  // namespace submap_slam::testing

@@ -66,6 +66,9 @@ void describeJoiningParameters(ParameterTable& table, Configuration& config) {
       "joiners' own data keeps submaps; those that do not fit are read again when they are needed, with "
       "the same result");
   describe(table, config.node_refinement);
+  table.section("output", "What a run writes beside its map");
+  table.add("report", config.output.report,
+            "Write report.html, a page with the map and all that is known about how it was made");
   table.section("plugins", "Shared libraries with joiners");
   table.add("load", config.plugins, "Plugin files to load besides the installed ones, separated by commas");
   for (const auto& joiner : config.joiners) joiner->describe(table);

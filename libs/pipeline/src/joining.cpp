@@ -55,7 +55,7 @@ void run(const SubmapJoiner& joiner, IncrementalJoin& at_work, const GridSubmaps
   show(1);
   checkResult(joiner, result.map, submaps);
   reportResult(joiner, result.map, reporter);
-  result.wall_s.push_back(timer.elapsed().wall_s);
+  result.stages.push_back(timer.record(joiner.name()));
 }
 
 /** Makes the map that a joiner left over. */
@@ -63,7 +63,7 @@ void fuse(const GridSubmaps& submaps, double map_resolution, JoinOutcome& result
   const StageTimer timer;
   JoinedMap& joined = result.map;
   if (joined.map.observedCells() == 0) joined.map = fuseEvidence(submaps, joined.frames, map_resolution);
-  result.wall_s.push_back(timer.elapsed().wall_s);
+  result.stages.push_back(timer.record("fuse"));
 }
 
 }  // namespace

@@ -9,9 +9,11 @@
 #include <submap_slam/output/replace_file.h>
 #include <submap_slam/output/text_file.h>
 #include <submap_slam/output/trajectory_file.h>
+#include <submap_slam/pipeline/finish_run.h>
 #include <submap_slam/pipeline/results.h>
 #include <submap_slam/pipeline/run_files.h>
 #include <submap_slam/rawlog/landmark_log.h>
+#include <submap_slam/report/run_report.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -135,24 +137,30 @@ void LandmarkHalf::update(std::size_t submaps_in_file, double fraction) {
                              submaps.size(), 100 * fraction, toString(joined.status), update_s));
 }
 
-void LandmarkHalf::finish(const LandmarkSubmaps& submaps, const Trajectory& grid_path, RunSummary& summary) {
+FinishedMap LandmarkHalf::finish(const LandmarkSubmaps& submaps, const Trajectory& grid_path,
+                                 RunSummary& summary) {
   Metrics metrics;
   const StageTimer join_timer;
   reporter_.log(fmt::format("{} landmark submaps", submaps.size()));
-  const JoinedLandmarks joined = join(submaps, summary.interrupted);
+  JoinedLandmarks joined = join(submaps, summary.interrupted);
   reportResult(joiner_, joined, reporter_);
   checkConsistency(submaps, joined, reporter_);
   addTime(metrics, "join_", join_timer);
+  addStage(summary.metrics, join_timer.record(joiner_.name()));
   summary.failed = joined.status == JoinStatus::kFailed;
   addLandmarkMetrics(metrics, submaps, joined);
 
   const StageTimer write_timer;
-  const Trajectory path = trajectoryOf(submaps, joined);
+  Trajectory path = trajectoryOf(submaps, joined);
   writeLandmarkResults(out_, prefix_, joined, path);
   writeFrames(out_.file("frames.csv"), submaps, joined);
   addTime(metrics, "write_", write_timer);
+  addStage(summary.metrics, write_timer.record(prefix_ + "write"));
   for (const auto& [key, value] : metrics.items()) summary.metrics[prefix_ + key] = value;
   if (!grid_path.empty()) addPathDifference(grid_path, path, summary.metrics);
+  return {std::move(path), [submaps, joined = std::move(joined)](const RunRecord& record) {
+            return runReport(submaps, joined, record);
+          }};
 }
 
 RunSummary joinLandmarkFile(const std::string& submap_file, const std::string& folder, bool overwrite,
@@ -162,23 +170,11 @@ RunSummary joinLandmarkFile(const std::string& submap_file, const std::string& f
   const auto joiner = config.landmarkJoiner();
   const LandmarkSubmaps submaps = readLandmarkSubmaps(submap_file);
   const OutputDirectory out(folder, overwrite);
-  addTime(summary.metrics, "read_", timer);
-  LandmarkHalf(*joiner, out, false, config.joining.update_growth, reporter).finish(submaps, {}, summary);
-  writeRunRecord(out, config, reporter.logLines());
-  addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
-  writeJson(out.file(kMetricsFile), summary.metrics);
+  addTimedStage(summary.metrics, "read", timer);
+  LandmarkHalf half(*joiner, out, false, config.joining.update_growth, reporter);
+  const FinishedMap map = half.finish(submaps, {}, summary);
+  finishRun({submap_file, out, config, reporter, timer}, summary.metrics, map.report);
   return summary;
-}
-
-std::string landmarkSummary(const RunSummary& summary, const std::string& folder) {
-  const Metrics& m = summary.metrics;
-  return fmt::format(
-      "{} submaps with {} features, {} landmarks\njoined: {} ({}), objective {:.6g}\n"
-      "{:.1f} s, {:.1f} s CPU, {:.0f} MB\nmap: {}",
-      m["submaps"].get<int>(), m["features"].get<int>(), m["landmarks"].get<int>(),
-      m["join_status"].get<std::string>(), m["join_reason"].get<std::string>(), m["objective"].get<double>(),
-      m["wall_s"].get<double>(), m["cpu_s"].get<double>(), m["peak_memory_mb"].get<double>(),
-      (std::filesystem::path(folder) / "map.png").string());
 }
 
 }  // namespace submap_slam

@@ -98,9 +98,9 @@ void MapUpdates::list(const JoinOutcome& outcome, double read_s, double write_s)
   table_ += fmt::format("{},{},{},{},{},{},{:.3f}", submaps_.all().size(), nodesOf(submaps_.all()),
                         loops.accepted, loops.rejected, joined.objective, toString(joined.status), read_s);
   double sum_s = read_s + write_s;
-  for (const double stage_s : outcome.wall_s) {
-    table_ += fmt::format(",{:.3f}", stage_s);
-    sum_s += stage_s;
+  for (const StageRecord& stage : outcome.stages) {
+    table_ += fmt::format(",{:.3f}", stage.time.wall_s);
+    sum_s += stage.time.wall_s;
   }
   table_ += fmt::format(",{:.3f},{:.3f}\n", write_s, sum_s);
   replaceFile(out_.file(kUpdatesFile), [this](const std::string& file) { writeText(file, table_); });

@@ -68,6 +68,18 @@ void addLandmarkMetrics(Metrics& metrics, const LandmarkSubmaps& submaps, const 
   metrics["features_dropped"] = errors.dropped;
 }
 
+void addStage(Metrics& metrics, const StageRecord& stage) {
+  metrics["stages"].push_back({{"name", stage.name},
+                               {"wall_s", stage.time.wall_s},
+                               {"cpu_s", stage.time.cpu_s},
+                               {"peak_memory_mb", stage.peak_memory_mb}});
+}
+
+void addTimedStage(Metrics& metrics, const std::string& name, const StageTimer& timer) {
+  addTime(metrics, name + "_", timer);
+  addStage(metrics, timer.record(name));
+}
+
 void addRunMetrics(Metrics& metrics, uint64_t seed, const std::vector<std::string>& warnings,
                    const StageTimer& timer) {
   addTime(metrics, "", timer);

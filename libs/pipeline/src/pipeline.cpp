@@ -3,24 +3,25 @@
 #include <fmt/format.h>
 #include <submap_slam/core/errors.h>
 #include <submap_slam/mapping/node_refinement.h>
-#include <submap_slam/output/json_file.h>
 #include <submap_slam/output/text_file.h>
 #include <submap_slam/pipeline/edited_submaps.h>
+#include <submap_slam/pipeline/finish_run.h>
 #include <submap_slam/pipeline/joining.h>
+#include <submap_slam/pipeline/landmark_pipeline.h>
+#include <submap_slam/pipeline/map_forms.h>
 #include <submap_slam/pipeline/map_updates.h>
 #include <submap_slam/pipeline/metrics.h>
 #include <submap_slam/pipeline/results.h>
 #include <submap_slam/pipeline/run_files.h>
 #include <submap_slam/pipeline/stage_timer.h>
+#include <submap_slam/pipeline/submap_building.h>
 #include <submap_slam/rawlog/landmark_log.h>
+#include <submap_slam/report/run_report.h>
 
 #include <algorithm>
 #include <memory>
 #include <optional>
 
-#include <submap_slam/pipeline/landmark_pipeline.h>
-#include <submap_slam/pipeline/map_forms.h>
-#include <submap_slam/pipeline/submap_building.h>
 
 namespace submap_slam {
 namespace {
@@ -67,20 +68,24 @@ void logEdits(const Edits& edits, const JoinerChain& joiners, Reporter& reporter
 void refineNodesAndJoin(GridSubmaps& submaps, JoinOutcome& outcome, const Joining& joining,
                         const Configuration& config, SubmapStore& store, Reporter& reporter) {
   for (int round = 1; round <= config.node_refinement.rounds && !outcome.stopped; ++round) {
+    const StageTimer timer;
     reporter.progress(fmt::format("refining nodes, round {}", round), 0);
     RefinedSubmaps refined = refineNodes(submaps, outcome.map, config.mapper, config.node_refinement,
                                          [&](GridSubmap& submap) { store.takeOver(submap); });
     reporter.log(fmt::format("nodes refined, round {}: moved by {:.4f} m at the mean, {:.4f} m at most",
                              round, refined.mean_move, refined.max_move));
     submaps = std::move(refined.submaps);
+    std::vector<StageRecord> stages = std::move(outcome.stages);
+    stages.push_back(timer.record("refine nodes"));
     outcome = joining.joinAgain(submaps, std::move(refined.joined), reporter);
+    outcome.stages.insert(outcome.stages.begin(), stages.begin(), stages.end());
   }
 }
 
-/** Joins and writes everything but the record of the run; returns the path. */
-Trajectory joinAndWrite(const EditedSubmaps& submaps, Joining& joining, const OutputDirectory& out,
-                        const Configuration& config, SubmapStore& store, Reporter& reporter,
-                        RunSummary& summary) {
+/** Joins and writes everything but what finishRun writes. */
+FinishedMap joinAndWrite(const Run& run, const EditedSubmaps& submaps, Joining& joining, SubmapStore& store,
+                         RunSummary& summary) {
+  const auto& [input, out, config, reporter, run_timer] = run;
   checkEdits(submaps.edits(), submaps.all());
   Metrics& metrics = summary.metrics;
   const StageTimer join_timer;
@@ -89,59 +94,51 @@ Trajectory joinAndWrite(const EditedSubmaps& submaps, Joining& joining, const Ou
   GridSubmaps shown = submaps.shown();
   JoinOutcome outcome = joining.join(shown, reporter, submaps.byHand());
   refineNodesAndJoin(shown, outcome, joining, config, store, reporter);
-  const JoinedMap& joined = outcome.map;
+  JoinedMap& joined = outcome.map;
   requireObservations(joined.map);
   summary.interrupted = outcome.stopped;
   addJoinMetrics(metrics, submaps.all(), joined);
   addTime(metrics, "join_", join_timer);
+  for (const StageRecord& stage : outcome.stages) addStage(metrics, stage);
 
   const StageTimer write_timer;
-  writeJoined(out, shown, joined, metrics);
-  addTime(metrics, "write_", write_timer);
-  return trajectoryOf(shown, joined);
+  const auto progress = writeJoined(out, shown, joined, metrics);
+  addTimedStage(metrics, "write", write_timer);
+  Trajectory path = trajectoryOf(shown, joined);
+  return {std::move(path), [shown, progress, map = std::move(outcome.map)](const RunRecord& record) {
+            return runReport(shown, map, progress, record);
+          }};
 }
 
 /** The grids of a run that maps a log: joined while they are built, if the user wants that, and in the end.
  */
 class GridHalf {
  public:
-  GridHalf(const OutputDirectory& out, Joining& joining, const Edits& edits, bool goes_on,
-           const Configuration& config, Reporter& reporter)
-      : out_(out),
+  GridHalf(const Run& run, Joining& joining, const Edits& edits, bool goes_on)
+      : run_(run),
         joining_(joining),
-        config_(config),
-        reporter_(reporter),
-        store_(makeStore(config, out)),
-        follower_(out.file(kSubmapFile), store_),
+        store_(makeStore(run.config, run.out)),
+        follower_(run.out.file(kSubmapFile), store_),
         submaps_(edits),
-        updates_(follower_, submaps_, joining, out, config.joining.update_growth, goes_on, reporter) {}
+        updates_(follower_, submaps_, joining, run.out, run.config.joining.update_growth, goes_on,
+                 run.reporter) {}
 
   MapUpdates& updates() { return updates_; }
 
-  Trajectory finish(RunSummary& summary) {
+  FinishedMap finish(RunSummary& summary) {
     submaps_.add(follower_.readNew());
-    requireSubmaps(out_.file(kSubmapFile));
-    return joinAndWrite(submaps_, joining_, out_, config_, *store_, reporter_, summary);
+    requireSubmaps(run_.out.file(kSubmapFile));
+    return joinAndWrite(run_, submaps_, joining_, *store_, summary);
   }
 
  private:
-  const OutputDirectory& out_;
+  const Run& run_;
   Joining& joining_;
-  const Configuration& config_;
-  Reporter& reporter_;
   std::shared_ptr<SubmapStore> store_;
   SubmapFollower follower_;
   EditedSubmaps submaps_;
   MapUpdates updates_;
 };
-
-/** The last files of a run; with metrics.json it is finished. */
-void writeRecord(const OutputDirectory& out, const Configuration& config, Reporter& reporter,
-                 const StageTimer& timer, RunSummary& summary) {
-  writeRunRecord(out, config, reporter.logLines());
-  addRunMetrics(summary.metrics, config.seed, reporter.warnings(), timer);
-  writeJson(out.file(kMetricsFile), summary.metrics);
-}
 
 void refuseEdits(const Edits& edits, const MapForms& forms) {
   if (!forms.grids && !edits.list.empty())
@@ -150,12 +147,13 @@ void refuseEdits(const Edits& edits, const MapForms& forms) {
 
 }  // namespace
 
-void writeJoined(const OutputDirectory& out, const GridSubmaps& submaps, const JoinedMap& joined,
+std::vector<SubmapProgress> writeJoined(const OutputDirectory& out, const GridSubmaps& submaps, const JoinedMap& joined,
                  Metrics& metrics) {
   writeResults(out, submaps, joined);
-  const auto progress = mappingProgress(submaps, joined.frames);
+  auto progress = mappingProgress(submaps, joined.frames);
   addProgressMetrics(metrics, progress);
   writeText(out.file("submaps.csv"), progressCsv(progress));
+  return progress;
 }
 
 RunSummary mapRawlog(const std::string& log, const std::string& folder, bool overwrite,
@@ -169,11 +167,12 @@ RunSummary mapRawlog(const std::string& log, const std::string& folder, bool ove
   StretchSource source(log, readerParams(config, forms), stretchParams(config, forms),
                        detectorParams(config, forms));
   const OutputDirectory out = openFolder(folder, overwrite);
+  const Run run{log, out, config, reporter, timer};
 
   SubmapFiles files = openSubmapFiles(out, forms, log, config, overwrite, reporter);
   const bool goes_on = files.submapsDone() > 0;
   std::optional<GridHalf> grids;
-  if (forms.grids) grids.emplace(out, joining, edits, goes_on, config, reporter);
+  if (forms.grids) grids.emplace(run, joining, edits, goes_on);
   std::optional<LandmarkHalf> landmarks;
   if (forms.landmarks)
     landmarks.emplace(*landmark_joiner, out, forms.grids, config.joining.update_growth, reporter);
@@ -187,20 +186,21 @@ RunSummary mapRawlog(const std::string& log, const std::string& folder, bool ove
     };
   summary.interrupted = !buildSubmaps(source, StretchMapper(config, forms), files, reporter, show);
   summary.submaps_in_map = grids ? grids->updates().submapsInMap() : landmarks->submapsInMap();
-  addTime(summary.metrics, "build_", timer);
+  addTimedStage(summary.metrics, "build", timer);
   reportLog(source, reporter);
   summary.damaged = !source.damage().empty();
   if (summary.interrupted) return summary;
 
   addLogMetrics(summary.metrics, source.report());
-  Trajectory path;
-  if (grids) path = grids->finish(summary);
+  FinishedMap map;
+  if (grids) map = grids->finish(summary);
   if (landmarks && !summary.interrupted) {
     const LandmarkSubmaps submaps = readLandmarkSubmaps(out.file(kLandmarkFile));
     requireFeatures(submaps);
-    landmarks->finish(submaps, path, summary);
+    FinishedMap of_landmarks = landmarks->finish(submaps, map.path, summary);
+    if (!grids) map = std::move(of_landmarks);
   }
-  writeRecord(out, config, reporter, timer, summary);
+  finishRun(run, summary.metrics, map.report);
   return summary;
 }
 
@@ -235,8 +235,9 @@ RunSummary joinFile(const std::string& submap_file, const std::string& folder, b
   submaps.add(read.submaps);
   summary.damaged = !read.damage.empty();
   if (summary.damaged) reporter.warning(read.damage + "; the submaps before it are joined");
-  joinAndWrite(submaps, joining, out, config, *store, reporter, summary);
-  writeRecord(out, config, reporter, timer, summary);
+  const Run run{submap_file, out, config, reporter, timer};
+  const FinishedMap map = joinAndWrite(run, submaps, joining, *store, summary);
+  finishRun(run, summary.metrics, map.report);
   return summary;
 }
 

@@ -37,11 +37,15 @@ void writeResults(const OutputDirectory& out, const GridSubmaps& submaps, const 
   writeSceneLog(out.file("map.rawlog"), joined.map, trajectory, joined.frames);
 }
 
-void writeRunRecord(const OutputDirectory& out, const Configuration& config,
-                    const std::vector<std::string>& log) {
+std::string iniOf(const Configuration& config) {
   std::ostringstream ini;
   config.table.writeIni(ini);
-  writeText(out.file("config.ini"), ini.str());
+  return ini.str();
+}
+
+void writeRunRecord(const OutputDirectory& out, const Configuration& config,
+                    const std::vector<std::string>& log) {
+  writeText(out.file("config.ini"), iniOf(config));
   writeText(out.file("log.txt"), fmt::format("{}\n", fmt::join(log, "\n")));
 }
 

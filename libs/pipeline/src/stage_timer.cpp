@@ -29,6 +29,8 @@ ElapsedTime StageTimer::elapsed() const {
   return {wall.count(), cpuSeconds() - cpu_start_s_};
 }
 
+StageRecord StageTimer::record(const std::string& name) const { return {name, elapsed(), peakMemoryMb()}; }
+
 double peakMemoryMb() { return static_cast<double>(usage().ru_maxrss) * 1024e-6; }
 
 }  // namespace submap_slam

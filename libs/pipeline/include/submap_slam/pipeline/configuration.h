@@ -31,6 +31,11 @@ struct JoiningParams {
   double memory = 350;                           ///< MB that the program may take while it joins, about
 };
 
+/** Section [output]. */
+struct OutputParams {
+  bool report = true;  ///< write report.html
+};
+
 /** How much memory a SubmapStore may take: what the map, the joiners' own data and the program itself leave.
  */
 std::size_t bytesForSubmaps(const JoiningParams& params);
@@ -62,6 +67,7 @@ class Configuration {
   uint64_t seed = 1;
   JoiningParams joining;
   NodeRefinementParams node_refinement;
+  OutputParams output;
   std::string plugins;                           ///< [plugins] load, files
   std::vector<std::shared_ptr<Joiner>> joiners;  ///< all that are available, sorted by name
   ParameterTable table;                          ///< points into the members above and into the joiners

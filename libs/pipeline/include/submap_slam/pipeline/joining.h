@@ -9,13 +9,14 @@
 #include <string>
 #include <vector>
 
+#include <submap_slam/pipeline/stage_timer.h>
 namespace submap_slam {
 
 /** What joiners made of submaps. */
 struct JoinOutcome {
   JoinedMap map;
-  bool stopped = false;        ///< a stop signal ended a joiner early
-  std::vector<double> wall_s;  ///< time of each joiner, and last that of fusing the map if that was left over
+  bool stopped = false;             ///< a stop signal ended a joiner early
+  std::vector<StageRecord> stages;  ///< each joiner, and last "fuse", making the map if that was left over
 };
 
 /** The joiners of [joining] chain at work. They may be called again when there are more submaps, and then

@@ -1,15 +1,15 @@
 /** The way from landmark submaps to a map of landmarks. */
 #pragma once
 
-#include <submap_slam/pipeline/pipeline.h>
-
-#include <string>
 #include <submap_slam/core/landmark_joiner.h>
 #include <submap_slam/output/output_directory.h>
 
-#include <memory>
-
+#include <submap_slam/pipeline/finish_run.h>
+#include <submap_slam/pipeline/pipeline.h>
 #include <submap_slam/pipeline/update_schedule.h>
+
+#include <memory>
+#include <string>
 
 namespace submap_slam {
 
@@ -34,7 +34,7 @@ class LandmarkHalf {
   /** Joins and writes everything but the record of the run.
    * @param grid_path where there are grids: `landmark_path_difference_…` says how the landmarks' path differs
    */
-  void finish(const LandmarkSubmaps& submaps, const Trajectory& grid_path, RunSummary& summary);
+  FinishedMap finish(const LandmarkSubmaps& submaps, const Trajectory& grid_path, RunSummary& summary);
 
   /** How many submaps the latest map has; 0: there is none. */
   std::size_t submapsInMap() const { return in_map_; }
@@ -51,8 +51,5 @@ class LandmarkHalf {
   std::string table_;  // content of updates.csv
   std::size_t in_map_ = 0;
 };
-
-/** What `join` and `map` say at the end. */
-std::string landmarkSummary(const RunSummary& summary, const std::string& folder);
 
 }  // namespace submap_slam

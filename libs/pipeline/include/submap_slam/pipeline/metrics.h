@@ -36,6 +36,12 @@ void addProgressMetrics(Metrics& metrics, const std::vector<SubmapProgress>& pro
  * it ignored the ids, how it compares with them: association_wrong, association_missed, features_dropped */
 void addLandmarkMetrics(Metrics& metrics, const LandmarkSubmaps& submaps, const JoinedLandmarks& joined);
 
+/** An entry of `stages`: name, wall_s, cpu_s, peak_memory_mb. */
+void addStage(Metrics& metrics, const StageRecord& stage);
+
+/** addTime, and an entry of `stages`. */
+void addTimedStage(Metrics& metrics, const std::string& name, const StageTimer& timer);
+
 /** What every run ends with: its times, peak_memory_mb, seed, version, warnings. */
 void addRunMetrics(Metrics& metrics, uint64_t seed, const std::vector<std::string>& warnings,
                    const StageTimer& timer);

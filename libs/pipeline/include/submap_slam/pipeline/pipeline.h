@@ -3,6 +3,7 @@
 
 #include <submap_slam/core/edits.h>
 #include <submap_slam/core/joined_map.h>
+#include <submap_slam/eval/mapping_progress.h>
 #include <submap_slam/output/output_directory.h>
 #include <submap_slam/pipeline/configuration.h>
 #include <submap_slam/pipeline/metrics.h>
@@ -10,6 +11,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 namespace submap_slam {
 
@@ -46,8 +48,9 @@ RunSummary joinFile(const std::string& submap_file, const std::string& folder, b
                     const Configuration& config, Reporter& reporter, const Edits& edits = {});
 
 /** Writes all results of a joining but the record of the run, and adds the figures that come with writing them.
+ * Returns what submaps.csv says.
  * @param submaps those that the joiners got */
-void writeJoined(const OutputDirectory& out, const GridSubmaps& submaps, const JoinedMap& joined,
+std::vector<SubmapProgress> writeJoined(const OutputDirectory& out, const GridSubmaps& submaps, const JoinedMap& joined,
                  Metrics& metrics);
 
 }  // namespace submap_slam

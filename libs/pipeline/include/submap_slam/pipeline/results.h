@@ -17,6 +17,9 @@ void writeMapSoFar(const OutputDirectory& out, const GridSubmaps& submaps, const
  * map.simplemap, map.3Dscene, map.rawlog, trajectory.tum, graph.g2o, frames.csv and constraints.csv. */
 void writeResults(const OutputDirectory& out, const GridSubmaps& submaps, const JoinedMap& joined);
 
+/** Every effective parameter as an ini file. */
+std::string iniOf(const Configuration& config);
+
 /** Writes how the results came about: config.ini with every effective parameter, and log.txt. */
 void writeRunRecord(const OutputDirectory& out, const Configuration& config,
                     const std::vector<std::string>& log);
