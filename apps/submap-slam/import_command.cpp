@@ -79,6 +79,13 @@ void addFormOptions(CLI::App& command, ImportCommandOptions& options) {
       ->type_name("R")
       ->group(group);
   command
+      .add_option("--topics", options.import.topics,
+                  "ROS bag: topics to read: /scan,/odom (default: all scans, first odometry)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("TOPICS")
+      ->group(group);
+  command
       .add_option("--beams", options.beams,
                   "Angle of the first beam and from one to the next, degrees, left positive")
       ->expected(2)
@@ -125,7 +132,8 @@ void addImportCommand(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<ImportCommandOptions>();
   CLI::App* command = app.add_subcommand("import", "Makes a rawlog from a log of another program");
   command
-      ->add_option("input", options->input, "Log, also gzip: CARMEN, scans or landmarks as text, pose graph")
+      ->add_option("input", options->input,
+                   "Log, also gzip: CARMEN, ROS 1 bag, scans or landmarks as text, pose graph")
       ->required()
       ->type_name("FILE");
   command->add_option("-o,--output", options->output, "Rawlog to write; of a pose graph a .g2o file")

@@ -33,9 +33,11 @@ inline std::vector<mrpt::obs::CObservation::Ptr> readObservations(const std::str
   mrpt::io::CFileGZInputStream in(file);
   auto archive = mrpt::serialization::archiveFrom(in);
   std::vector<mrpt::obs::CObservation::Ptr> objects;
-  while (!in.checkEOF())
-    objects.push_back(std::dynamic_pointer_cast<mrpt::obs::CObservation>(archive.ReadObject()));
-  return objects;
+  try {
+    for (;;) objects.push_back(std::dynamic_pointer_cast<mrpt::obs::CObservation>(archive.ReadObject()));
+  } catch (const mrpt::serialization::CExceptionEOF&) {
+    return objects;
+  }
 }
 
 inline Imported importText(const std::string& text, const ImportOptions& options = {}) {

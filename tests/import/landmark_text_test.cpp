@@ -69,8 +69,8 @@ TEST_F(LandmarkText, SteeringFollowsTheModelOfTheVehicle) {
   const auto log = read("1\n", "0 2 0.3\n1 2 0.3\n");
   const auto& velocity = log.all<CObservationOdometry>().at(0)->velocityLocal;
   // v = 2 / (1 − tan 0.3 · 0.76 / 2.83), ω = v tan 0.3 / 2.83; tan 0.3 = 0.30933625
-  EXPECT_NEAR(velocity.vx, 2.1811955, 1e-6);
-  EXPECT_NEAR(velocity.omega, 0.2384190, 1e-6);
+  EXPECT_NEAR(velocity.vx, 2.1811978, 1e-6);
+  EXPECT_NEAR(velocity.omega, 0.2384182, 1e-6);
 }
 
 TEST_F(LandmarkText, OdometryMayBePosesOrTum) {

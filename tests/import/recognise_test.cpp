@@ -22,7 +22,7 @@ TEST(RecogniseForm, ByContent) {
 }
 
 TEST(RecogniseForm, SaysWhatOtherFilesAre) {
-  EXPECT_THAT(refusal("#ROSBAG V2.0\n"), HasSubstr("rosbag2rawlog"));
+  EXPECT_THAT(refusal("#ROSBAG V1.2\n"), HasSubstr("is no ROS bag of format 2.0"));
   EXPECT_THAT(refusal(std::string("\x17\x80mrpt::obs::CObservation2DRangeScan\0\0", 37)),
               HasSubstr("is a rawlog already"));
   EXPECT_THAT(refusal(std::string("\x89PNG\0\0\0", 7)), HasSubstr("is a binary file"));

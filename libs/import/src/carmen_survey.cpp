@@ -61,10 +61,9 @@ std::optional<double> maxRangeOf(const CarmenLaserSurvey& laser) {
     if (laser.greatest_m > mode.first_code_m - 5e-3 && laser.greatest_m < mode.last_code_m + 5e-3)
       return mode.max_range;
   constexpr uint64_t kLeastCount = 20;
-  constexpr double kLeastShare = 1e-3;
-  if (laser.greatest_count < kLeastCount ||
-      static_cast<double>(laser.greatest_count) < kLeastShare * static_cast<double>(laser.readings))
-    return std::nullopt;
+  constexpr double kLeastShare = 1e-3, kMostShare = 0.9;
+  const double share = static_cast<double>(laser.greatest_count) / static_cast<double>(laser.readings);
+  if (laser.greatest_count < kLeastCount || share < kLeastShare || share > kMostShare) return std::nullopt;
   return std::floor(laser.greatest_m * 100 + 1e-6) / 100;
 }
 

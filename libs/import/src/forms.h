@@ -20,6 +20,7 @@ void importCarmen(const ImportJob& job);
 void importScanText(const ImportJob& job);
 void importLandmarks(const ImportJob& job);
 void importGraph(const ImportJob& job);
+void importBag(const ImportJob& job);
 
 /** True for the first word of a header line of scan text. */
 bool isScanTextKey(std::string_view word);

@@ -18,20 +18,18 @@ std::string nameOf(ImportForm form) {
   return "";
 }
 
-/** Throws InputError for files that are known, but not to be imported. */
-void refuseOtherKinds(const std::string& file) {
+/** The form of a binary file; empty: it is text. Throws InputError for one that cannot be imported. */
+std::optional<ImportForm> binaryForm(const std::string& file) {
   ByteSource source(file);
   const std::string start = source.peek(64);
   if (start.empty()) throw InputError(fmt::format("{}: is empty", file));
-  if (start.rfind("#ROSBAG", 0) == 0)
-    throw InputError(
-        fmt::format("{}: is a ROS bag; convert it with rosbag2rawlog (docs/import.md has an example)", file));
-  if (start.find('\0') == std::string::npos) return;
+  if (start.rfind("#ROSBAG", 0) == 0) return ImportForm::kBag;
+  if (start.find('\0') == std::string::npos) return std::nullopt;
   const bool rawlog =
       start.find("CObservation") != std::string::npos || start.find("CActionCollection") != std::string::npos;
-  throw InputError(
-      fmt::format("{}: is {}", file,
-                  rawlog ? "a rawlog already; map it as it is" : "a binary file; expected a text log"));
+  throw InputError(fmt::format(
+      "{}: is {}", file,
+      rawlog ? "a rawlog already; map it as it is" : "a binary file; expected a text log or a bag"));
 }
 
 std::optional<ImportForm> formOfLine(std::string_view line) {
@@ -59,6 +57,7 @@ void refuseOptions(const ImportOptions& options, ImportForm form) {
   refuse(options.stamps != CarmenStamps::kAuto, form == ImportForm::kCarmen, "--stamps");
   refuse(options.beam_angles.has_value(), form == ImportForm::kCarmen || form == ImportForm::kScans,
          "--beams");
+  refuse(!options.topics.empty(), form == ImportForm::kBag, "--topics");
   refuse(options.max_range.has_value(), form != ImportForm::kGraph, "--max-range");
   refuse(options.T_robot_sensor.has_value(), form != ImportForm::kGraph, "--sensor-pose");
 }
@@ -73,6 +72,8 @@ void dispatch(const ImportJob& job) {
       return importLandmarks(job);
     case ImportForm::kGraph:
       return importGraph(job);
+    case ImportForm::kBag:
+      return importBag(job);
   }
 }
 
@@ -82,13 +83,14 @@ const std::map<std::string, ImportForm>& importForms() {
   static const std::map<std::string, ImportForm> kForms = {{"carmen", ImportForm::kCarmen},
                                                            {"scans", ImportForm::kScans},
                                                            {"landmarks", ImportForm::kLandmarks},
-                                                           {"graph", ImportForm::kGraph}};
+                                                           {"graph", ImportForm::kGraph},
+                                                           {"bag", ImportForm::kBag}};
   return kForms;
 }
 
 ImportForm recogniseForm(const std::string& file) {
   constexpr uint64_t kMostLines = 1000;
-  refuseOtherKinds(file);
+  if (const auto form = binaryForm(file)) return *form;
   TextLines lines(file);
   while (lines.number() < kMostLines && lines.next()) {
     Words words(lines.line());
@@ -102,7 +104,7 @@ ImportForm recogniseForm(const std::string& file) {
   }
   throw InputError(
       fmt::format("{}: is none of the forms that can be imported; expected a CARMEN log, scans or landmarks "
-                  "as text, or a pose graph",
+                  "as text, a pose graph, or a ROS bag",
                   file));
 }
 
@@ -120,7 +122,8 @@ ImportReport importFile(const std::string& file, const std::string& output, cons
 }
 
 std::string ImportReport::asText() const {
-  std::string text = fmt::format("form: {}, {} lines\n", nameOf(form), lines);
+  std::string text =
+      fmt::format("form: {}{}\n", nameOf(form), lines > 0 ? fmt::format(", {} lines", lines) : "");
   for (const auto& [what, count] : written) text += fmt::format("  {:>9} {}\n", count, what);
   for (const auto& note : notes) text += "  " + note + "\n";
   for (const auto& warning : warnings) text += "  warning: " + warning + "\n";

@@ -1,4 +1,4 @@
-/** Logs of other programs, text or gzip-compressed text, made into rawlogs. docs/import.md describes the
+/** Logs of other programs, text (also gzip) and ROS bags, made into rawlogs. docs/import.md describes the
  * forms. */
 #pragma once
 
@@ -17,10 +17,11 @@ enum class ImportForm {
   kCarmen,     ///< CARMEN log: FLASER, RLASER, ROBOTLASERn, RAWLASERn, ODOM, PARAM
   kScans,      ///< header, then lines `stamp x y theta r1 r2 …`
   kLandmarks,  ///< lines `stamp range bearing [id]`, with odometry or controls from a second file
-  kGraph       ///< pose graph of g2o or TORO; becomes a g2o file
+  kGraph,      ///< pose graph of g2o or TORO; becomes a g2o file
+  kBag         ///< ROS 1 bag: LaserScan and Odometry
 };
 
-/** Names of the forms as users write them: carmen, scans, landmarks, graph. */
+/** Names of the forms as users write them: bag, carmen, graph, landmarks, scans. */
 const std::map<std::string, ImportForm>& importForms();
 
 /** Angles of the beams of a scanner. */
@@ -44,6 +45,9 @@ struct ImportOptions {
   std::optional<BeamAngles> beam_angles;              ///< of CARMEN scans that do not say them
   CarmenStamps stamps = CarmenStamps::kAuto;
 
+  std::vector<std::string>
+      topics;  ///< of a bag; empty: all scans, and odometry of the first topic that has any
+
   std::string odometry_file;  ///< of landmarks: lines `stamp x y theta`, or TUM
   std::string controls_file;  ///< of landmarks: lines `stamp speed turn`
   double wheel_base = 0;      ///< m; above 0, `turn` is the steering angle, otherwise the yaw rate
@@ -65,7 +69,7 @@ struct ImportReport {
 };
 
 /** The form of a file by its content. Throws InputError if it cannot be read or is none of them, saying what
- * it is where that can be told (rawlog, ROS bag, 3D graph). */
+ * it is where that can be told (rawlog, 3D graph). */
 ImportForm recogniseForm(const std::string& file);
 
 /** Reads a file and writes a rawlog of time-stamped observations (kGraph: a g2o file) to `output`, replacing
