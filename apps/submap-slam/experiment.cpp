@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <sstream>
 
@@ -17,7 +18,8 @@ namespace submap_slam {
 namespace fs = std::filesystem;
 namespace {
 
-const std::string kDataPrefix = "data ", kSettingPrefix = "setting ", kSimulationPrefix = "simulation.";
+const std::string kDataPrefix = "data ", kSettingPrefix = "setting ", kSimulationPrefix = "simulation.",
+                  kPlotPrefix = "plot ";
 
 /** Section [experiment]: lists of words. */
 struct Lists {
@@ -187,14 +189,64 @@ ExperimentSetting readSetting(const ExperimentFile& file, const std::string& nam
   return setting;
 }
 
-ExperimentColumn readColumn(const std::string& key) {
+ExperimentColumn readColumn(const std::string& key, const std::string& where) {
   std::vector<std::string> known;
   for (const auto& column : experimentColumns()) {
     if (column.key == key) return column;
     known.push_back(column.key);
   }
-  throw ConfigError(fmt::format("[experiment] columns: unknown column '{}'; expected some of {}", key,
-                                fmt::join(known, ", ")));
+  throw ConfigError(
+      fmt::format("{}: unknown column '{}'; expected some of {}", where, key, fmt::join(known, ", ")));
+}
+
+void requireChoice(const IniEntry& entry, const std::vector<std::string>& choices) {
+  if (std::find(choices.begin(), choices.end(), entry.value) == choices.end())
+    throw ConfigError(fmt::format("[{}] {} = '{}': expected {}", entry.section, entry.key, entry.value,
+                                  fmt::join(choices, " or ")));
+}
+
+void setPlot(ExperimentPlot& plot, const IniEntry& entry) {
+  if (entry.key == "title") {
+    plot.title = entry.value;
+  } else if (entry.key == "x") {
+    requireChoice(entry, {"setting", "data", "seed"});
+    plot.x = entry.value;
+  } else if (entry.key == "y") {
+    plot.y = readColumn(entry.value, fmt::format("[{}] y", entry.section));
+  } else if (entry.key == "kind") {
+    requireChoice(entry, {"bars", "lines"});
+    plot.kind = entry.value;
+  } else {
+    throw ConfigError(
+        fmt::format("unknown key [{}] {}; expected title, x, y or kind", entry.section, entry.key));
+  }
+}
+
+ExperimentPlot readPlot(const ExperimentFile& file, const IniEntry& heading) {
+  ExperimentPlot plot;
+  plot.name = heading.section.substr(kPlotPrefix.size());
+  for (const auto& entry : file.keysOf(heading.section)) file.at(entry, [&] { setPlot(plot, entry); });
+  file.at(heading, [&] {
+    if (plot.y.key.empty()) throw ConfigError(fmt::format("[{}]: needs y", heading.section));
+  });
+  if (plot.title.empty()) plot.title = plot.y.label;
+  return plot;
+}
+
+std::vector<ExperimentPlot> readPlots(const ExperimentFile& file,
+                                      const std::vector<ExperimentColumn>& columns) {
+  std::vector<ExperimentPlot> plots;
+  for (const auto& entry : file.entries())
+    if (entry.key.empty() && startsWith(entry.section, kPlotPrefix)) plots.push_back(readPlot(file, entry));
+  if (!plots.empty()) return plots;
+  for (const auto& column : columns) {
+    ExperimentPlot plot;
+    plot.name = column.key;
+    plot.title = column.label;
+    plot.y = column;
+    plots.push_back(plot);
+  }
+  return plots;
 }
 
 Lists readLists(const ExperimentFile& file, const std::vector<std::string>& overrides) {
@@ -209,9 +261,10 @@ Lists readLists(const ExperimentFile& file, const std::vector<std::string>& over
 
 void refuseUnknownSection(const IniEntry& entry) {
   const std::string& section = entry.section;
-  if (section != "experiment" && !startsWith(section, kDataPrefix) && !startsWith(section, kSettingPrefix))
-    throw ConfigError(
-        fmt::format("unknown section [{}]; expected [experiment], [data NAME] or [setting NAME]", section));
+  if (section != "experiment" && !startsWith(section, kDataPrefix) && !startsWith(section, kSettingPrefix) &&
+      !startsWith(section, kPlotPrefix))
+    throw ConfigError(fmt::format(
+        "unknown section [{}]; expected [experiment], [data NAME], [setting NAME] or [plot NAME]", section));
 }
 
 Experiment readExperiment(const ExperimentFile& file, const std::vector<std::string>& overrides,
@@ -226,7 +279,9 @@ Experiment readExperiment(const ExperimentFile& file, const std::vector<std::str
     experiment.settings.push_back(readSetting(file, name));
   for (const auto& seed : listOf("seeds", lists.seeds))
     experiment.seeds.push_back(parseSeed(seed, "[experiment] seeds"));
-  for (const auto& key : listOf("columns", lists.columns)) experiment.columns.push_back(readColumn(key));
+  for (const auto& key : listOf("columns", lists.columns))
+    experiment.columns.push_back(readColumn(key, "[experiment] columns"));
+  experiment.plots = readPlots(file, experiment.columns);
   return experiment;
 }
 
@@ -295,6 +350,33 @@ Experiment loadExperiment(const std::string& file, const std::vector<std::string
   } catch (const ConfigError& e) {
     throw ConfigError(fmt::format("{}: {}", file, e.what()));
   }
+}
+
+std::string effectiveDescription(const std::string& file, const std::vector<std::string>& overrides) {
+  std::vector<std::string> lines;
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  const auto entries = readIni(file);
+  std::string added;
+  for (const auto& override : overrides) {  // experiment.KEY=VALUE, as loadExperiment() has checked
+    const std::string key =
+        override.substr(override.find('.') + 1, override.find('=') - override.find('.') - 1);
+    const std::string line = fmt::format("{} = {}", key, override.substr(override.find('=') + 1));
+    const auto there = std::find_if(entries.begin(), entries.end(), [&](const IniEntry& e) {
+      return e.section == "experiment" && e.key == key;
+    });
+    if (there == entries.end())
+      added += "\n" + line;
+    else
+      lines[there->line - 1] = line;
+  }
+  const auto heading = std::find_if(entries.begin(), entries.end(),
+                                    [](const IniEntry& e) { return e.section == "experiment"; });
+  if (heading == entries.end())
+    lines.insert(lines.begin(), "[experiment]" + added);
+  else
+    lines[heading->line - 1] += added;
+  return fmt::format("{}\n", fmt::join(lines, "\n"));
 }
 
 }  // namespace submap_slam

@@ -30,6 +30,14 @@ struct ExperimentColumn {
   int decimals;
 };
 
+/** Section [plot NAME]: a figure over settings, data or seeds. */
+struct ExperimentPlot {
+  std::string name, title;
+  std::string x = "setting";  ///< setting, data or seed; each other combination is a series
+  ExperimentColumn y;
+  std::string kind = "bars";  ///< bars or lines
+};
+
 /** An experiment file. Each combination of data, setting and seed is one cell. */
 struct Experiment {
   std::string title;
@@ -37,6 +45,7 @@ struct Experiment {
   std::vector<ExperimentSetting> settings;
   std::vector<uint64_t> seeds;
   std::vector<ExperimentColumn> columns;
+  std::vector<ExperimentPlot> plots;  ///< as in the file; without any, one of each column
 };
 
 /** All columns there are. */
@@ -51,5 +60,9 @@ const std::vector<ExperimentColumn>& experimentColumns();
  * that cannot end. */
 Experiment loadExperiment(const std::string& file, const std::vector<std::string>& overrides,
                           const std::string& data_folder);
+
+/** The text of an experiment file with the overrides in their places, so that it says the same without them.
+ */
+std::string effectiveDescription(const std::string& file, const std::vector<std::string>& overrides);
 
 }  // namespace submap_slam

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <mrpt/io/CFileGZInputStream.h>
 #include <mrpt/serialization/CArchive.h>
+#include <mrpt/system/os.h>
 #include <submap_slam/core/errors.h>
 #include <submap_slam/core/version.h>
 #include <submap_slam/output/json_file.h>
@@ -15,11 +16,13 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "cell_scores.h"
 #include "child_processes.h"
 #include "pipeline.h"
+#include "program_hash.h"
 #include "results.h"
 #include "simulation_files.h"
 #include "stop_signal.h"
@@ -43,26 +46,27 @@ struct Cell {
 
 // Simulated data
 
+std::string simulationText(const ExperimentData& data) {
+  return version() + scenarioIni(loadScenario(data.world, "", data.simulation));
+}
+
 /** Named by all that they depend on, so that an older simulation is never taken for a new one. */
 SimulationFiles simulationFiles(const fs::path& folder, const ExperimentData& data, uint64_t seed) {
-  const Scenario scenario = loadScenario(data.world, "", data.simulation);
-  const std::string hash = textHash(version() + scenarioIni(scenario));
+  const std::string hash = textHash(programHash({}) + simulationText(data));
   return SimulationFiles((folder / "data" / fmt::format("{}-{}-{}", data.world, hash, seed)).string());
 }
 
-std::vector<ChildTask> simulationTasks(const Experiment& experiment, const fs::path& folder) {
+/** What simulates the logs of cells that do not exist yet, each once. */
+std::vector<ChildTask> simulationTasks(const std::vector<Cell>& cells, const fs::path& folder) {
   std::vector<ChildTask> tasks;
-  for (const auto& data : experiment.data) {
-    if (data.world.empty()) continue;
-    for (const uint64_t seed : experiment.seeds) {
-      const SimulationFiles files = simulationFiles(folder, data, seed);
-      if (fs::exists(files.log)) continue;
-      const auto simulate = [&data, seed, files] {
-        writeSimulation(loadScenario(data.world, "", data.simulation), seed, RawlogForm::kObservations,
-                        files);
-      };
-      tasks.push_back({fmt::format("simulating {}, seed {}", data.name, seed), folder / "data", simulate});
-    }
+  std::set<std::string> logs;
+  for (const Cell& cell : cells) {
+    const ExperimentData& data = cell.data;
+    if (data.world.empty() || fs::exists(cell.log) || !logs.insert(cell.log).second) continue;
+    const auto simulate = [&data, seed = cell.seed, files = simulationFiles(folder, data, cell.seed)] {
+      writeSimulation(loadScenario(data.world, "", data.simulation), seed, RawlogForm::kObservations, files);
+    };
+    tasks.push_back({fmt::format("simulating {}, seed {}", data.name, cell.seed), folder / "data", simulate});
   }
   return tasks;
 }
@@ -76,14 +80,24 @@ std::unique_ptr<Configuration> configurationOf(const Cell& cell) {
   return loadConfiguration(options);
 }
 
-/** Everything that a result depends on; files of recordings by name and size. */
+/** Everything that a result depends on but the build of the program; recordings by both ends of their files.
+ */
 std::string fingerprint(const Cell& cell) {
   std::ostringstream text;
   text << version() << '\n' << cell.setting.baseline << '\n';
   configurationOf(cell)->table.writeIni(text);
-  for (const auto& file : {cell.log, cell.truth, cell.data.relations})
-    text << fs::path(file).filename().string() << ' ' << (fs::exists(file) ? fs::file_size(file) : 0) << '\n';
+  if (!cell.data.world.empty()) text << simulationText(cell.data);
+  for (const auto& file : {cell.data.log, cell.data.truth, cell.data.relations})
+    if (!file.empty()) text << endsHash(file) << ' ' << fs::file_size(file) << '\n';
   return textHash(text.str());
+}
+
+/** The build that a cell runs with, the plugins of its setting included. */
+std::string buildOf(const Cell& cell) {
+  std::vector<std::string> files;
+  std::istringstream list(configurationOf(cell)->plugins);
+  for (std::string file; std::getline(list, file, ',');) files.push_back(file);
+  return programHash(files);
 }
 
 /** The poses and the map that are to be judged. */
@@ -150,6 +164,8 @@ void runCell(const Cell& cell, int threads) {
   if (!cell.data.relations.empty()) addRelationScores(figures, estimate.trajectory, cell.data.relations);
 
   figures["version"] = version();
+  figures["mrpt"] = mrpt::system::MRPT_getVersion();
+  figures["build"] = buildOf(cell);
   figures["seed"] = cell.seed;
   figures["fingerprint"] = fingerprint(cell);
   replaceFile((cell.folder / kResultFile).string(),
@@ -161,9 +177,10 @@ nlohmann::json readResult(const fs::path& folder) {
   return nlohmann::json::parse(in, nullptr, false);
 }
 
-bool isComplete(const Cell& cell) {
+bool isComplete(const Cell& cell, bool any_build) {
   const auto result = readResult(cell.folder);
-  return result.is_object() && result.value("fingerprint", "") == fingerprint(cell);
+  return result.is_object() && result.value("fingerprint", "") == fingerprint(cell) &&
+         (any_build || result.value("build", "") == buildOf(cell));
 }
 
 std::vector<Cell> cellsOf(const Experiment& experiment, const fs::path& folder) {
@@ -189,22 +206,24 @@ fs::path cellFolder(const fs::path& experiment_folder, const ExperimentData& dat
   return experiment_folder / "cells" / data.name / setting.name / std::to_string(seed);
 }
 
-std::string listCells(const Experiment& experiment, const fs::path& folder) {
+std::string listCells(const Experiment& experiment, const ExperimentRun& run) {
   std::string list;
-  for (const Cell& cell : cellsOf(experiment, folder))
-    list += fmt::format("{}: {}\n", cell.name(), isComplete(cell) ? "complete" : "to do");
+  for (const Cell& cell : cellsOf(experiment, run.folder))
+    list += fmt::format("{}: {}\n", cell.name(), isComplete(cell, run.any_build) ? "complete" : "to do");
   return list;
 }
 
 bool runCells(const Experiment& experiment, const ExperimentRun& run, Reporter& reporter) {
   fs::create_directories(run.folder / "data");
-  if (!runInChildProcesses(simulationTasks(experiment, run.folder), run.jobs, reporter)) return false;
+  std::vector<Cell> to_do;
+  for (const Cell& cell : cellsOf(experiment, run.folder))
+    if (!isComplete(cell, run.any_build)) to_do.push_back(cell);
+  if (!runInChildProcesses(simulationTasks(to_do, run.folder), run.jobs, reporter)) return false;
 
   const int threads =
       run.threads > 0 ? run.threads : std::max(1, tbb::info::default_concurrency() / run.jobs);
   std::vector<ChildTask> tasks;
-  for (const Cell& cell : cellsOf(experiment, run.folder)) {
-    if (isComplete(cell)) continue;
+  for (const Cell& cell : to_do) {
     fs::remove(cell.folder / kResultFile);
     tasks.push_back({cell.name(), cell.folder, [cell, threads] { runCell(cell, threads); }});
   }
@@ -219,6 +238,7 @@ CellResult readCell(const fs::path& folder) {
   if (!result.is_object()) return cell;
   for (const auto& [key, value] : result.items())
     if (value.is_number()) cell.figures[key] = value.get<double>();
+  cell.build = result.value("build", "");
   return cell;
 }
 

@@ -16,6 +16,7 @@ struct ExperimentRun {
   std::filesystem::path folder;  ///< data/ gets the simulated logs, cells/DATA/SETTING/SEED/ the results
   int jobs = 1;                  ///< cells at a time
   int threads = 0;               ///< of each cell; 0: an equal share of the machine's
+  bool any_build = false;        ///< keep what another build of the same version has done
 };
 
 /** What is known of a cell. */
@@ -23,6 +24,7 @@ struct CellResult {
   std::map<std::string, double>
       figures;        ///< by the keys of experimentColumns(); what does not apply is missing
   std::string error;  ///< why there are none; empty also if the cell has not run
+  std::string build;  ///< hash of the program that ran it
 };
 
 /** Where the results of a cell are. */
@@ -30,7 +32,7 @@ std::filesystem::path cellFolder(const std::filesystem::path& experiment_folder,
                                  const ExperimentSetting& setting, uint64_t seed);
 
 /** Names of the cells with "complete" or "to do", one a line. */
-std::string listCells(const Experiment& experiment, const std::filesystem::path& folder);
+std::string listCells(const Experiment& experiment, const ExperimentRun& run);
 
 /** Runs all cells that have no complete result of the same program, data and parameters yet. Returns false if
  * a stop signal ended it early. */

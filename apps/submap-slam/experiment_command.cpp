@@ -1,9 +1,10 @@
 #include <fmt/format.h>
 #include <submap_slam/core/errors.h>
 #include <submap_slam/output/output_directory.h>
+#include <submap_slam/output/replace_file.h>
+#include <submap_slam/output/text_file.h>
 
 #include <filesystem>
-#include <fstream>
 #include <memory>
 
 #include "commands.h"
@@ -23,17 +24,23 @@ struct ExperimentOptions {
   bool list = false, quiet = false;
 };
 
-/** The folder, new or of an earlier run of an experiment, and the description in it. */
+/** The folder, new or of an earlier run of an experiment, and the description in it, with which the table can
+ * be made again. */
 void openExperimentFolder(const ExperimentOptions& options) {
   const fs::path& folder = options.run.folder;
   const fs::path record = folder / kExperimentFile;
   const OutputDirectory out(folder, fs::exists(record));
-  if (fs::exists(record) && fs::equivalent(record, options.file)) return;
-  fs::copy_file(options.file, record, fs::copy_options::overwrite_existing);
-  std::ofstream ini(record, std::ios::app);
-  for (const auto& setting : options.settings) ini << "# run with --set " << setting << '\n';
-  ini.close();
-  if (!ini) throw OutputError(fmt::format("{}: cannot be written", record.string()));
+  const std::string text = effectiveDescription(options.file, options.settings);
+  replaceFile(record.string(), [&](const std::string& file) { writeText(file, text); });
+}
+
+/** Tables of what is complete; returns how many cells are not. */
+std::size_t writeResults(const Experiment& experiment, const fs::path& folder) {
+  const auto rows = readRows(experiment, folder);
+  writeTables(experiment, rows, folder);
+  std::size_t missing = 0;
+  for (const auto& row : rows) missing += row.cells.size() - row.complete();
+  return missing;
 }
 
 int runExperiment(ExperimentOptions& options) {
@@ -41,13 +48,13 @@ int runExperiment(ExperimentOptions& options) {
   fs::path& folder = options.run.folder;
   if (folder.empty()) folder = fs::path(options.file).stem();
   if (options.list) {
-    fmt::print("{}", listCells(experiment, folder));
+    fmt::print("{}", listCells(experiment, options.run));
     return kSuccess;
   }
   openExperimentFolder(options);
   Reporter reporter(options.quiet);
   const bool finished = runCells(experiment, options.run, reporter);
-  const std::size_t missing = writeTables(experiment, folder);
+  const std::size_t missing = writeResults(experiment, folder);
   const std::string table = (folder / "table.md").string();
   if (!finished) {
     reporter.note(
@@ -98,6 +105,9 @@ void addExperimentCommand(CLI::App& app, int& exit_code) {
                    "Threads of each cell (default: all, shared by the jobs)")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
+  command->add_flag(
+      "--any-build", options->run.any_build,
+      "Keep complete cells that another build of the same version made (default: run them anew)");
   command->add_flag("--list", options->list, "Only list the cells and which are complete");
   command->add_flag("-q,--quiet", options->quiet, "No progress and no summary");
   command->footer(

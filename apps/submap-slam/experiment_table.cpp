@@ -2,42 +2,32 @@
 
 #include <fmt/format.h>
 #include <submap_slam/core/version.h>
-#include <submap_slam/eval/error_statistics.h>
 #include <submap_slam/output/text_file.h>
 
 #include <algorithm>
-
-#include "experiment_cells.h"
+#include <set>
 
 namespace submap_slam {
 namespace fs = std::filesystem;
-namespace {
 
-/** Data × setting: the cells of all seeds. */
-struct Row {
-  std::string data, setting;
-  std::vector<CellResult> cells;
-  std::string note;  ///< failed and missing cells
+std::size_t ExperimentRow::complete() const {
+  return static_cast<std::size_t>(
+      std::count_if(cells.begin(), cells.end(), [](const auto& c) { return !c.figures.empty(); }));
+}
 
-  std::size_t complete() const {
-    return static_cast<std::size_t>(
-        std::count_if(cells.begin(), cells.end(), [](const auto& c) { return !c.figures.empty(); }));
-  }
+ErrorStatistics ExperimentRow::statistics(const std::string& key) const {
+  std::vector<double> values;
+  for (const auto& cell : cells)
+    if (const auto figure = cell.figures.find(key); figure != cell.figures.end())
+      values.push_back(figure->second);
+  return errorStatistics(values);
+}
 
-  ErrorStatistics statistics(const std::string& key) const {
-    std::vector<double> values;
-    for (const auto& cell : cells)
-      if (const auto figure = cell.figures.find(key); figure != cell.figures.end())
-        values.push_back(figure->second);
-    return errorStatistics(values);
-  }
-};
-
-std::vector<Row> rowsOf(const Experiment& experiment, const fs::path& folder) {
-  std::vector<Row> rows;
+std::vector<ExperimentRow> readRows(const Experiment& experiment, const fs::path& folder) {
+  std::vector<ExperimentRow> rows;
   for (const auto& data : experiment.data)
     for (const auto& setting : experiment.settings) {
-      Row row{data.name, setting.name, {}, ""};
+      ExperimentRow row{data.name, setting.name, {}, ""};
       for (const uint64_t seed : experiment.seeds) {
         const CellResult cell = readCell(cellFolder(folder, data, setting, seed));
         row.cells.push_back(cell);
@@ -50,7 +40,17 @@ std::vector<Row> rowsOf(const Experiment& experiment, const fs::path& folder) {
   return rows;
 }
 
-std::string markdown(const Experiment& experiment, const std::vector<Row>& rows) {
+std::vector<std::string> buildsOf(const std::vector<ExperimentRow>& rows) {
+  std::set<std::string> builds;
+  for (const auto& row : rows)
+    for (const auto& cell : row.cells)
+      if (!cell.build.empty()) builds.insert(cell.build);
+  return {builds.begin(), builds.end()};
+}
+
+namespace {
+
+std::string markdown(const Experiment& experiment, const std::vector<ExperimentRow>& rows) {
   std::string text = fmt::format("# {}\n\n| data | setting | runs |", experiment.title);
   for (const auto& column : experiment.columns) text += fmt::format(" {} |", column.label);
   text += "\n|---|---|---|";
@@ -69,8 +69,8 @@ std::string markdown(const Experiment& experiment, const std::vector<Row>& rows)
     }
     if (!row.note.empty()) text += fmt::format(" failed: {} |", row.note);
   }
-  return text + fmt::format("\n\nMean ± standard deviation over seeds {}; submap-slam {}.\n",
-                            fmt::join(experiment.seeds, ", "), version());
+  return text + fmt::format("\n\nMean ± standard deviation over seeds {}; submap-slam {}, build {}.\n",
+                            fmt::join(experiment.seeds, ", "), version(), fmt::join(buildsOf(rows), " and "));
 }
 
 /** RFC 4180. */
@@ -80,7 +80,7 @@ std::string quoted(const std::string& text) {
   return result + '"';
 }
 
-std::string csv(const Experiment& experiment, const std::vector<Row>& rows) {
+std::string csv(const Experiment& experiment, const std::vector<ExperimentRow>& rows) {
   std::string text = "data,setting,runs";
   for (const auto& column : experiment.columns) text += fmt::format(",{0}_mean,{0}_std", column.key);
   text += ",failed\n";
@@ -97,13 +97,10 @@ std::string csv(const Experiment& experiment, const std::vector<Row>& rows) {
 
 }  // namespace
 
-std::size_t writeTables(const Experiment& experiment, const fs::path& folder) {
-  const auto rows = rowsOf(experiment, folder);
+void writeTables(const Experiment& experiment, const std::vector<ExperimentRow>& rows,
+                 const fs::path& folder) {
   writeText((folder / "table.md").string(), markdown(experiment, rows));
   writeText((folder / "table.csv").string(), csv(experiment, rows));
-  std::size_t missing = 0;
-  for (const auto& row : rows) missing += row.cells.size() - row.complete();
-  return missing;
 }
 
 }  // namespace submap_slam

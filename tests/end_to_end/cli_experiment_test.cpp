@@ -160,6 +160,12 @@ TEST_F(ExperimentTest, RefusesBadDescriptions) {
   refuses(head + "seeds = 1, -1\n" + kData + kChain, "'-1' is not a whole number, 0 or more");
   refuses("[experiment]\ndata = hall\nsettings = chain\ncolumns = beauty\n" + std::string(kData) + kChain,
           "unknown column 'beauty'");
+  const std::string plot = head + kData + kChain + "[plot errors]\n";
+  refuses(plot, "[plot errors]: needs y");
+  refuses(plot + "y = beauty\n", "[plot errors] y: unknown column 'beauty'");
+  refuses(plot + "y = auc\nx = time\n", "[plot errors] x = 'time': expected setting or data or seed");
+  refuses(plot + "y = auc\nkind = pie\n", "[plot errors] kind = 'pie': expected bars or lines");
+  refuses(plot + "y = auc\ncolour = red\n", "unknown key [plot errors] colour");
   EXPECT_FALSE(fs::exists(path("out")));
 }
 
@@ -191,12 +197,35 @@ TEST_F(ExperimentTest, NamesTheLineThatIsWrong) {
 }
 
 TEST_F(ExperimentTest, RecordsOverridesAndRunsFromTheRecord) {
-  const std::string setting = "experiment.seeds=7";
-  succeed({"experiment", experiment("odometry"), "-o", path("out"), "--set", setting});
+  const Arguments overrides{"--set", "experiment.seeds=7"};
+  Arguments arguments{"experiment", experiment("odometry"), "-o", path("out")};
+  arguments.insert(arguments.end(), overrides.begin(), overrides.end());
+  succeed(arguments);
   EXPECT_TRUE(fs::exists(result("odometry", "7")));
-  EXPECT_THAT(contentOf(path("out/experiment.ini")),
-              ::testing::EndsWith("\n# run with --set " + setting + "\n"));
-  EXPECT_THAT(succeed({"experiment", path("out/experiment.ini"), "-o", path("out")}).err, HasSubstr("[2/2]"));
+  EXPECT_THAT(contentOf(path("out/experiment.ini")), HasSubstr("\nseeds = 7\n"));
+  const std::string before = table();
+  const Outcome again = succeed({"experiment", path("out/experiment.ini"), "-o", path("out"), "--list"});
+  EXPECT_EQ(again.out, "hall, odometry, seed 7: complete\n");
+  succeed({"experiment", path("out/experiment.ini"), "-o", path("fresh"), "-q"});
+  EXPECT_EQ(contentOf(path("fresh/table.md")), before);
+}
+
+TEST_F(ExperimentTest, RunsCellsOfAnotherBuildAnewUnlessToldToKeepThem) {
+  const Arguments list{"experiment", experiment("odometry"), "-o", path("out"), "--list"};
+  succeed({"experiment", path("e.ini"), "-o", path("out"), "-q"});
+  std::string text = contentOf(result("odometry", "1"));
+  const std::string key = "\"build\": \"";
+  ASSERT_NE(text.find(key), std::string::npos);
+  EXPECT_THAT(text, HasSubstr("\"mrpt\": \"MRPT"));
+  text.replace(text.find(key) + key.size(), 16, "0123456789abcdef");
+  writeFile(result("odometry", "1"), text);
+  EXPECT_THAT(succeed(list).out, HasSubstr("seed 1: to do\nhall, odometry, seed 2: complete\n"));
+  Arguments keep = list;
+  keep.emplace_back("--any-build");
+  EXPECT_THAT(succeed(keep).out, HasSubstr("seed 1: complete\n"));
+  keep.erase(keep.end() - 2);  // --list
+  succeed(keep);
+  EXPECT_THAT(table(), HasSubstr("0123456789abcdef"));
 }
 
 TEST_F(ExperimentTest, NeverWritesIntoAFolderOfSomethingElse) {
