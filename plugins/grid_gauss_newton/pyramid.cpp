@@ -41,28 +41,20 @@ EvidenceRaster::EvidenceRaster(double x0_m, double y0_m, double cell_size, int c
       rows(row_count),
       cells(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)) {}
 
-EvidenceRaster EvidenceRaster::fromGrid(const EvidenceGrid& grid, double background) {
-  const int nx = static_cast<int>(grid.sizeX()), ny = static_cast<int>(grid.sizeY());
-  int left = nx, right = -1, bottom = ny, top = -1;
-  auto hits = grid.hits.begin();
-  for (int y = 0; y < ny; ++y)
-    for (int x = 0; x < nx; ++x, ++hits) {
-      if (*hits <= 0) continue;
-      left = std::min(left, x), right = std::max(right, x), bottom = std::min(bottom, y),
-      top = std::max(top, y);
-    }
+EvidenceRaster EvidenceRaster::fromEvidence(const PackedEvidence& evidence, double background) {
+  int left = evidence.sizeX(), right = -1, bottom = evidence.sizeY(), top = -1;
+  evidence.forEachObserved([&](int x, int y, float, float) {
+    left = std::min(left, x), right = std::max(right, x);
+    bottom = std::min(bottom, y), top = std::max(top, y);
+  });
   if (right < left) return {};
 
-  EvidenceRaster raster(grid.log_odds.idx2x(left - 1), grid.log_odds.idx2y(bottom - 1), grid.resolution(),
+  const double r = evidence.resolution();
+  EvidenceRaster raster(evidence.xMin() + (left - 0.5) * r, evidence.yMin() + (bottom - 0.5) * r, r,
                         right - left + 3, top - bottom + 3);
-  for (int y = bottom; y <= top; ++y)
-    for (int x = left; x <= right; ++x) {
-      const std::size_t source = static_cast<std::size_t>(y) * grid.sizeX() + static_cast<std::size_t>(x);
-      const float n = grid.hits.data()[source];
-      if (n <= 0) continue;
-      raster.cell(x - left + 1, y - bottom + 1) = {
-          aboveBackground(grid.log_odds.data()[source], n, background), n};
-    }
+  evidence.forEachObserved([&](int x, int y, float log_odds, float hits) {
+    raster.cell(x - left + 1, y - bottom + 1) = {aboveBackground(log_odds, hits, background), hits};
+  });
   return raster;
 }
 
@@ -192,7 +184,7 @@ std::vector<EvidenceLevels> buildPyramid(const GridSubmaps& submaps, const Pyram
   const std::vector<int> halvings = halvingsToCoarsest(submaps);
   std::vector<EvidenceLevels> pyramid(static_cast<std::size_t>(shape.levels), EvidenceLevels(submaps.size()));
   tbb::parallel_for(std::size_t{0}, submaps.size(), [&](std::size_t i) {
-    EvidenceRaster raster = EvidenceRaster::fromGrid(*LoadedEvidence(*submaps[i]), shape.background);
+    EvidenceRaster raster = EvidenceRaster::fromEvidence(*submaps[i]->packedEvidence(), shape.background);
     for (int k = 0; k < shape.finest_level + halvings[i]; ++k) raster = raster.halved();
     for (std::size_t k = 0; k < pyramid.size(); ++k) {
       EvidenceRaster coarser = k + 1 < pyramid.size() ? raster.halved() : EvidenceRaster();

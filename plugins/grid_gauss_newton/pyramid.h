@@ -32,9 +32,9 @@ struct EvidenceRaster {
   EvidenceRaster() = default;
   EvidenceRaster(double x0, double y0, double resolution, int columns, int rows);
 
-  /** Crops the grid to its observed cells; empty if there are none.
+  /** The observed cells; empty if there are none.
    * @param background log-odds per hit that are taken off, see backgroundOf */
-  static EvidenceRaster fromGrid(const EvidenceGrid& grid, double background = 0);
+  static EvidenceRaster fromEvidence(const PackedEvidence& evidence, double background = 0);
 
   /** Twice the cell size; each cell is the sum of 2 × 2 cells. */
   EvidenceRaster halved() const;
