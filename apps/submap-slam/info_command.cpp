@@ -10,6 +10,7 @@
 #include "overlap.h"
 #include "reporter.h"
 #include "run_files.h"
+#include "submap_budget.h"
 
 namespace submap_slam {
 namespace {
@@ -38,7 +39,7 @@ void printSubmap(const GridSubmap& submap, const EvidenceSummary& grid, double o
 int runInfo(const std::string& file) {
   const std::string spill_file =
       (std::filesystem::temp_directory_path() / fmt::format("submap-slam-{}.spill", getpid())).string();
-  const auto store = SubmapStore::create(bytesForSubmaps(JoiningParams{}), spill_file);
+  const auto store = SubmapStore::create(submapBudget(JoiningParams{}.memory), spill_file);
   const RecoveredSubmaps read = readUsableSubmaps(file, store);
   const GridSubmaps& submaps = read.submaps;
   const auto overlaps = overlapShares(submaps, chainSubmaps(submaps).frames);

@@ -20,6 +20,7 @@
 #include "run_files.h"
 #include "stage_timer.h"
 #include "stop_signal.h"
+#include "submap_budget.h"
 
 namespace submap_slam {
 namespace {
@@ -54,7 +55,7 @@ void requireObservations(const EvidenceGrid& map) {
 }
 
 std::shared_ptr<SubmapStore> makeStore(const Configuration& config, const OutputDirectory& out) {
-  return SubmapStore::create(bytesForSubmaps(config.joining), out.file(kSpillFile));
+  return SubmapStore::create(submapBudget(config.joining.memory), out.file(kSpillFile));
 }
 
 void logEdits(const Edits& edits, const JoinerChain& joiners, Reporter& reporter) {
@@ -96,10 +97,10 @@ void joinAndWrite(const EditedSubmaps& submaps, Joining& joining, const OutputDi
   addTime(metrics, "join_", join_timer);
 
   const StageTimer write_timer;
-  writeResults(out, shown, joined);
   const auto progress = mappingProgress(shown, joined.frames);
   addProgressMetrics(metrics, progress);
   writeText(out.file("submaps.csv"), progressCsv(progress));
+  writeResults(out, shown, joined);
   writeRunRecord(out, config, reporter.logLines());
   addTime(metrics, "write_", write_timer);
 }
