@@ -9,6 +9,7 @@
 
 #include "commands.h"
 #include "overlap.h"
+#include <submap_slam/pipeline/submap_budget.h>
 #include "terminal_reporter.h"
 
 namespace submap_slam {
@@ -38,7 +39,7 @@ void printSubmap(const GridSubmap& submap, const EvidenceSummary& grid, double o
 int runInfo(const std::string& file) {
   const std::string spill_file =
       (std::filesystem::temp_directory_path() / fmt::format("submap-slam-{}.spill", getpid())).string();
-  const auto store = SubmapStore::create(bytesForSubmaps(JoiningParams{}), spill_file);
+  const auto store = SubmapStore::create(submapBudget(JoiningParams{}.memory), spill_file);
   const RecoveredSubmaps read = readUsableSubmaps(file, store);
   const GridSubmaps& submaps = read.submaps;
   const auto overlaps = overlapShares(submaps, chainSubmaps(submaps).frames);

@@ -77,18 +77,20 @@ int runReportingErrors(int argc, char** argv) {
   }
 }
 
-/** Gives the memory of big grids back to the system when they go. By default glibc raises the limit with each
- * one that is freed, and what is left of the heap grows full of holes. */
-void returnBigBlocks() {
-  constexpr int kBigBlock_bytes = 128 * 1024;
+/** Submaps come and go: their memory is kept for the next one, because pages that the system gives anew cost
+ * more than what is done with them. Only what is larger, such as global maps, goes back when it is freed; by
+ * default glibc raises that limit with each such block until the heap grows full of holes. */
+void keepMemoryOfSubmaps() {
+  constexpr int kBigBlock_bytes = 8 << 20, kFreeAtEnd_bytes = 32 << 20;
   mallopt(M_MMAP_THRESHOLD, kBigBlock_bytes);
+  mallopt(M_TRIM_THRESHOLD, kFreeAtEnd_bytes);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   try {
-    returnBigBlocks();
+    keepMemoryOfSubmaps();
     catchStopSignals();
     return runReportingErrors(argc, argv);
   } catch (...) {  // stderr itself is gone, or memory is

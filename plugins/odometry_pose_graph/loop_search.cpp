@@ -84,7 +84,7 @@ struct PathCircle {
 
 /** What the search keeps of an older submap. */
 struct Known {
-  SubmapSurface surface;
+  MatchableSubmap submap;
   PathCircle path;
 };
 
@@ -167,13 +167,12 @@ void LoopSearch::State::appendFrame(FrameGraph& graph) const {
 
 void LoopSearch::State::closeLoops(std::size_t k) {
   const SubmapMatcher matcher(*submaps_[k], params_.matcher);
-  known_.push_back({matcher.surface(), PathCircle(*submaps_[k])});
+  known_.push_back({matcher.reference(), PathCircle(*submaps_[k])});
   if (k < 2) return;
   const FrameCovariances covariances(result_.graph);
   std::vector<Task> tasks = tasksOf(k, covariances);
   tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t t) {
-    const Known& older = known_[tasks[t].older];
-    tasks[t].match = matcher.match(*submaps_[tasks[t].older], older.surface, tasks[t].window);
+    tasks[t].match = matcher.match(known_[tasks[t].older].submap, tasks[t].window);
   });
   for (const Task& task : tasks) {
     if (!task.match) continue;

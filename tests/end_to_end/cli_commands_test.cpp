@@ -111,7 +111,7 @@ TEST_F(CliTest, ResultsAreTheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST_F(CliTest, ResultsAreTheSameBytesForAnyMemory) {
-  succeed({"map", log("loop.rawlog"), "-o", path("none"), "-q", "--memory", "300MB"});  // keeps no submap
+  succeed({"map", log("loop.rawlog"), "-o", path("none"), "-q", "--memory", "130MB"});  // keeps no submap
   succeed({"join", path("none/submaps.rawlog"), "-o", path("all"), "-q", "--memory", "2GB"});
   for (const char* file : {"map.pgm", "map.png", "map.gridmap.gz", "map.simplemap", "map.3Dscene",
                            "trajectory.tum", "graph.g2o", "constraints.csv"})
@@ -131,7 +131,7 @@ TEST_F(CliTest, RefinedNodesReachTheResults) {
   const std::string refined = with("refined", {"--set", "node_refinement.rounds=1"});
   EXPECT_THAT(contentOf(path("refined/log.txt")), HasSubstr("nodes refined, round 1"));
   EXPECT_NE(refined, with("plain", {}));
-  EXPECT_EQ(refined, with("little", {"--set", "node_refinement.rounds=1", "--memory", "300MB"}));
+  EXPECT_EQ(refined, with("little", {"--set", "node_refinement.rounds=1", "--memory", "130MB"}));
 }
 
 TEST_F(CliTest, RefusesAnImpossibleMemory) {

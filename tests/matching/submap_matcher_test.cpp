@@ -31,8 +31,6 @@ const RoomLaps& room() {
   return laps;
 }
 
-SubmapSurface surfaceOfSubmap(const GridSubmap& submap) { return surfaceOf(surfelMapOf(submap)); }
-
 TEST(SubmapMatcher, FindsWhereSubmapsBelongFromFarOff) {
   const auto& submaps = room().submaps;
   ASSERT_GE(submaps.size(), 4u);
@@ -41,7 +39,7 @@ TEST(SubmapMatcher, FindsWhereSubmapsBelongFromFarOff) {
     const TPose2D truth = room().trueRelation(0, k);
     if (std::hypot(truth.x, truth.y) > 5) continue;  // they share too little
     const PoseWindow window{{truth.x + 1.7, truth.y - 2.1, truth.phi + 0.3}, 3, 0.5};
-    const auto match = matcher.match(*submaps[k], surfaceOfSubmap(*submaps[k]), window);
+    const auto match = matcher.match(matchable(*submaps[k]), window);
     ASSERT_TRUE(match) << k;
     EXPECT_NEAR(match->T_ref_other.x, truth.x, 0.03) << k;
     EXPECT_NEAR(match->T_ref_other.y, truth.y, 0.03) << k;
@@ -55,11 +53,10 @@ TEST(SubmapMatcher, FindsWhereSubmapsBelongFromFarOff) {
 TEST(SubmapMatcher, UnloadedSubmapsMatchAlike) {
   const auto& submaps = room().submaps;
   const PoseWindow window{room().trueRelation(0, 2), 1.2, 0.2};
-  const auto surface = surfaceOfSubmap(*submaps[2]);
-  const auto loaded = SubmapMatcher(*submaps[0], {}).match(*submaps[2], surface, window);
+  const auto loaded = SubmapMatcher(*submaps[0], {}).match(matchable(*submaps[2]), window);
   submaps[0]->unload();
   submaps[2]->unload();
-  const auto unloaded = SubmapMatcher(*submaps[0], {}).match(*submaps[2], surface, window);
+  const auto unloaded = SubmapMatcher(*submaps[0], {}).match(matchable(*submaps[2]), window);
   submaps[0]->load();
   submaps[2]->load();
   ASSERT_TRUE(loaded && unloaded);
@@ -70,8 +67,8 @@ TEST(SubmapMatcher, ASubmapWithoutScansMatchesNothing) {
   GridSubmap empty;
   empty.nodes.resize(3);
   const auto& other = *room().submaps[0];
-  EXPECT_FALSE(SubmapMatcher(empty, {}).match(other, surfaceOfSubmap(other), {{}, 2, 0.3}));
-  EXPECT_FALSE(SubmapMatcher(other, {}).match(empty, surfaceOfSubmap(empty), {{}, 2, 0.3}));
+  EXPECT_FALSE(SubmapMatcher(empty, {}).match(matchable(other), {{}, 2, 0.3}));
+  EXPECT_FALSE(SubmapMatcher(other, {}).match(matchable(empty), {{}, 2, 0.3}));
 }
 
 }  // namespace

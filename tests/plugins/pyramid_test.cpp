@@ -17,9 +17,13 @@ EvidenceGrid gridWith(std::initializer_list<std::tuple<unsigned, unsigned, float
   return grid;
 }
 
+EvidenceRaster rasterOf(const EvidenceGrid& grid, double background = 0) {
+  return EvidenceRaster::fromEvidence(PackedEvidence(grid), background);
+}
+
 TEST(EvidenceRaster, KeepsObservedCellsWithARim) {
   const EvidenceGrid grid = gridWith({{3, 5, 1.5f, 2.0f}, {7, 6, -4.0f, 5.0f}});
-  const EvidenceRaster raster = EvidenceRaster::fromGrid(grid);
+  const EvidenceRaster raster = rasterOf(grid);
   EXPECT_EQ(raster.columns, 5 + 2);
   EXPECT_EQ(raster.rows, 2 + 2);
   EXPECT_NEAR(raster.x0 + 5 * raster.resolution, grid.log_odds.idx2x(7), 1e-12);
@@ -27,19 +31,18 @@ TEST(EvidenceRaster, KeepsObservedCellsWithARim) {
   EXPECT_EQ(raster.cell(5, 2).log_odds, -4.0f);
   EXPECT_EQ(raster.cell(1, 1).hits, 2.0f);
   EXPECT_EQ(raster.cell(0, 0).hits, 0.0f);
-  EXPECT_TRUE(EvidenceRaster::fromGrid(EvidenceGrid(-1, 1, -1, 1, 0.1)).cells.empty());
+  EXPECT_TRUE(rasterOf(EvidenceGrid(-1, 1, -1, 1, 0.1)).cells.empty());
 }
 
 TEST(EvidenceRaster, TakesTheBackgroundOff) {
-  const EvidenceRaster raster =
-      EvidenceRaster::fromGrid(gridWith({{2, 2, -1.2f, 3.0f}, {3, 2, 1.0f, 2.0f}}), -0.4);
+  const EvidenceRaster raster = rasterOf(gridWith({{2, 2, -1.2f, 3.0f}, {3, 2, 1.0f, 2.0f}}), -0.4);
   EXPECT_EQ(raster.cell(1, 1).log_odds, 0.0f) << "rounding must not leave anything";
   EXPECT_EQ(raster.cell(1, 1).hits, 3.0f);
   EXPECT_FLOAT_EQ(raster.cell(2, 1).log_odds, 1.8f);
 }
 
 TEST(EvidenceRaster, HalvingSumsTwoByTwoCellsInPlace) {
-  const EvidenceRaster fine = EvidenceRaster::fromGrid(gridWith(
+  const EvidenceRaster fine = rasterOf(gridWith(
       {{2, 2, 1.0f, 1.0f}, {3, 2, 2.0f, 1.0f}, {2, 3, 4.0f, 1.0f}, {3, 3, 8.0f, 1.0f}, {4, 3, 16.0f, 3.0f}}));
   const EvidenceRaster coarse = fine.halved();
   EXPECT_NEAR(coarse.resolution, 0.2, 1e-12);
@@ -54,7 +57,7 @@ TEST(EvidenceRaster, HalvingSumsTwoByTwoCellsInPlace) {
 }
 
 TEST(EvidenceRaster, StandardisingKeepsTheLogOddsPerHit) {
-  EvidenceRaster raster = EvidenceRaster::fromGrid(gridWith({{2, 2, 18.0f, 9.0f}}));
+  EvidenceRaster raster = rasterOf(gridWith({{2, 2, 18.0f, 9.0f}}));
   raster.standardise();
   EXPECT_FLOAT_EQ(raster.cell(1, 1).hits, 3.0f);
   EXPECT_FLOAT_EQ(raster.cell(1, 1).log_odds, 6.0f);
@@ -63,7 +66,7 @@ TEST(EvidenceRaster, StandardisingKeepsTheLogOddsPerHit) {
 TEST(EvidenceLevel, InterpolatesBilinearlyWithItsGradient) {
   const EvidenceGrid grid =
       gridWith({{3, 5, 1.0f, 2.0f}, {4, 5, 3.0f, 4.0f}, {3, 6, 5.0f, 6.0f}, {4, 6, 11.0f, 8.0f}});
-  const EvidenceLevel level(EvidenceRaster::fromGrid(grid));
+  const EvidenceLevel level(rasterOf(grid));
   EXPECT_NEAR(level.columnOf(grid.log_odds.idx2x(4)), 2, 1e-12);
   EXPECT_NEAR(level.rowOf(grid.log_odds.idx2y(6)), 2, 1e-12);
   const EvidenceSample s = level.sample(1.25, 1.5);
@@ -75,13 +78,30 @@ TEST(EvidenceLevel, InterpolatesBilinearlyWithItsGradient) {
   EXPECT_NEAR(s.hits_gradient[1], 4 / 0.1, 1e-9);
 }
 
+TEST(StoredCell, KeepsElevenBits) {
+  const auto stored = [](float log_odds, float hits) {
+    const EvidenceCell cell = StoredCell({log_odds, hits}).value();
+    return std::pair(cell.log_odds, cell.hits);
+  };
+  EXPECT_EQ(stored(-2.5f, 7.0f), std::pair(-2.5f, 7.0f));
+  EXPECT_EQ(stored(2047.0f, 0.125f), std::pair(2047.0f, 0.125f));
+  EXPECT_EQ(stored(2049.0f, 2051.0f), std::pair(2048.0f, 2052.0f)) << "halves go to the even one";
+  EXPECT_EQ(stored(-1e6f, 1e6f), std::pair(-65504.0f, 65504.0f));
+  EXPECT_EQ(stored(1e-6f, 1.0f), std::pair(0.0f, 1.0f));
+  EXPECT_EQ(stored(0.5f, 1e-6f), std::pair(0.0f, 0.0f)) << "without hits a cell is unknown";
+  for (float value = 1.0f / (1 << 14); value < 60000; value *= 1.0371f) {
+    EXPECT_NEAR(stored(-value, value).first, -value, value / (1 << 11));
+    EXPECT_NEAR(stored(-value, value).second, value, value / (1 << 11));
+  }
+}
+
 /** Over the borders of blocks, next to unknown blocks and far outside. */
 TEST(EvidenceLevel, IsTheRasterEverywhere) {
   EvidenceGrid grid = testing::roughSubmap(5, 4.3, 3.1, 0.1)->evidence;
   for (unsigned cy = 0; cy < grid.sizeY(); ++cy)  // a gap of several blocks
     for (unsigned cx = 7; cx < 31; ++cx)
       *grid.log_odds.cellByIndex(cx, cy) = *grid.hits.cellByIndex(cx, cy) = 0;
-  const EvidenceRaster raster = EvidenceRaster::fromGrid(grid);
+  const EvidenceRaster raster = rasterOf(grid);
   const EvidenceLevel level(raster);
   EXPECT_LT(level.blocks().size(), 5u * 6u) << "blocks of the gap are not stored";
   for (int r = -9; r < raster.rows + 9; ++r)
@@ -96,7 +116,7 @@ TEST(EvidenceLevel, IsTheRasterEverywhere) {
 }
 
 TEST(EvidenceLevel, SurfaceBitsSayWhereALookUpSeesMoreThanBackground) {
-  const EvidenceLevel level(EvidenceRaster::fromGrid(gridWith({{2, 2, 0.0f, 1.0f}, {9, 4, 5.0f, 1.0f}})));
+  const EvidenceLevel level(rasterOf(gridWith({{2, 2, 0.0f, 1.0f}, {9, 4, 5.0f, 1.0f}})));
   // The raster's cell (8, 3) is above the background: look-ups from four cells reach it.
   for (int r = 0; r < 6; ++r)
     for (int c = 0; c < 16; ++c) {
@@ -119,13 +139,17 @@ TEST(Pyramid, FinestLevelKeepsSumsAndCoarserOnesAreStandardised) {
   const auto pyramid = buildPyramid(submaps, {1, 3, 0});
   ASSERT_EQ(pyramid.size(), 3u);
   ASSERT_EQ(pyramid[2].size(), 2u);
-  EvidenceRaster expected = EvidenceRaster::fromGrid(submaps[1]->evidence).halved();
+  EvidenceRaster expected = rasterOf(submaps[1]->evidence).halved();
+  const auto expectStored = [](const EvidenceSample& sample, const EvidenceCell& cell) {
+    const EvidenceCell stored = StoredCell(cell).value();
+    EXPECT_EQ(sample.log_odds, static_cast<double>(stored.log_odds));
+    EXPECT_EQ(sample.hits, static_cast<double>(stored.hits));
+  };
   EXPECT_NEAR(pyramid[0][1].resolution(), 0.2, 1e-12);
-  EXPECT_EQ(pyramid[0][1].sample(3, 4).log_odds, static_cast<double>(expected.cell(3, 4).log_odds));
+  expectStored(pyramid[0][1].sample(3, 4), expected.cell(3, 4));
   expected = expected.halved();
   expected.standardise();
-  EXPECT_EQ(pyramid[1][1].sample(2, 3).log_odds, static_cast<double>(expected.cell(2, 3).log_odds));
-  EXPECT_EQ(pyramid[1][1].sample(2, 3).hits, static_cast<double>(expected.cell(2, 3).hits));
+  expectStored(pyramid[1][1].sample(2, 3), expected.cell(2, 3));
 }
 
 TEST(Pyramid, IsTheSameFromUnloadedSubmaps) {

@@ -217,8 +217,9 @@ FusedTile fuseTile(const MapLattice& map, int column, int row, const std::vector
   return {column, row, tile.fused()};
 }
 
-/** The smallest grid that holds every observed cell. */
-EvidenceGrid assembled(const MapLattice& map, const std::vector<FusedTile>& tiles) {
+/** The smallest grid that holds every observed cell. The tiles are given up one by one, not to have the map
+ * twice. */
+EvidenceGrid assembled(const MapLattice& map, std::vector<FusedTile> tiles) {
   int left = map.columns(), right = -1, low = map.rows(), high = -1;
   for (const FusedTile& tile : tiles)
     tile.evidence.forEachObserved([&](int cx, int cy, float, float) {
@@ -227,7 +228,10 @@ EvidenceGrid assembled(const MapLattice& map, const std::vector<FusedTile>& tile
     });
   if (right < left) return EvidenceGrid(0, map.resolution(), 0, map.resolution(), map.resolution());
   EvidenceGrid whole = map.part(left, low, right - left + 1, high - low + 1);
-  for (const FusedTile& tile : tiles) tile.evidence.copyTo(whole, tile.column - left, tile.row - low);
+  for (; !tiles.empty(); tiles.pop_back()) {
+    const FusedTile& tile = tiles.back();
+    tile.evidence.copyTo(whole, tile.column - left, tile.row - low);
+  }
   return whole;
 }
 
@@ -256,7 +260,7 @@ EvidenceGrid fuseEvidence(const GridSubmaps& submaps, const std::vector<CPosePDF
   for (int row = 0; row < map.rows(); row += kTile)
     for (int column = 0; column < map.columns(); column += kTile)
       tiles.push_back(fuseTile(map, column, row, placed));
-  return assembled(map, tiles);
+  return assembled(map, std::move(tiles));
 }
 
 }  // namespace submap_slam

@@ -45,9 +45,7 @@ class SeenArea {
   }
 
   void add(const PackedEvidence& evidence, const PlacedGrid& placed) {
-    for (int cy = 0; cy < evidence.sizeY(); ++cy)
-      for (int cx = 0; cx < evidence.sizeX(); ++cx)
-        if (evidence.cell(cx, cy).second > 0) mark(placed.at(cx + 0.5, cy + 0.5));
+    evidence.forEachObserved([&](int cx, int cy, float, float) { mark(placed.at(cx + 0.5, cy + 0.5)); });
   }
 
   std::size_t squares() const { return squares_; }

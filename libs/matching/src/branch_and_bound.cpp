@@ -3,6 +3,7 @@
 #include <mrpt/math/wrap2pi.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <tuple>
@@ -12,6 +13,9 @@ namespace {
 
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
+
+/** Of a point on an occupied cell. */
+constexpr uint32_t kBestScore = 255;
 
 struct Cell {
   int column, row;
@@ -51,7 +55,14 @@ class WindowSearch {
  private:
   double headingOf(double turn) const { return window_.centre.phi + (turn - half_turns_) * turn_step_; }
   const std::vector<Cell>& cellsAt(int turn_level, int turn);
+  struct LookUp {
+    const ScorePyramid::Level& level;
+    const std::vector<Cell>& cells;
+    int dx, dy;
+  };
+  LookUp lookUpOf(const Branch& branch);
   uint32_t bound(const Branch& branch);
+  std::array<uint32_t, 4> fourBounds(const Branch& branch, int step, uint32_t least);
   bool isInside(const Branch& branch) const {
     return branch.dx <= 2 * half_cells_ && branch.dy <= 2 * half_cells_ && branch.turn <= 2 * half_turns_;
   }
@@ -108,16 +119,36 @@ const std::vector<Cell>& WindowSearch::cellsAt(int turn_level, int turn) {
   return cells;
 }
 
-/** No pose of the branch scores more: a turn by half of its headings moves no point by more than half its
- * side, so a point stays in a square of twice the side. Exact for leaves. */
-uint32_t WindowSearch::bound(const Branch& branch) {
+/** Where a branch is looked up. No pose of it scores more: a turn by half of its headings moves no point by
+ * more than half its side, so a point stays in a square of twice the side. Exact for leaves. */
+WindowSearch::LookUp WindowSearch::lookUpOf(const Branch& branch) {
   const int turn_level = branch.turnLevel(), slack = (1 << turn_level) >> 1;
-  const int level = turn_level > 0 ? branch.level + 1 : branch.level;
-  const int dx = branch.dx - slack, dy = branch.dy - slack;
+  return {map_.level(turn_level > 0 ? branch.level + 1 : branch.level), cellsAt(turn_level, branch.turn),
+          branch.dx - slack, branch.dy - slack};
+}
+
+uint32_t WindowSearch::bound(const Branch& branch) {
+  const LookUp at = lookUpOf(branch);
   uint32_t sum = 0;
-  for (const Cell& cell : cellsAt(turn_level, branch.turn))
-    sum += map_.score(level, cell.column + dx, cell.row + dy);
+  for (const Cell& cell : at.cells) sum += at.level.score(cell.column + at.dx, cell.row + at.dy);
   return sum;
+}
+
+/** Bounds of a branch and of those `step` to the right, up, and both; all 0 as soon as it is clear that none
+ * reaches `least`. */
+std::array<uint32_t, 4> WindowSearch::fourBounds(const Branch& branch, int step, uint32_t least) {
+  constexpr std::size_t kTogether = 64;
+  const LookUp at = lookUpOf(branch);
+  std::array<uint32_t, 4> sums{};
+  for (std::size_t begin = 0; begin < at.cells.size(); begin += kTogether) {
+    const std::size_t left = at.cells.size() - begin;
+    if (*std::max_element(sums.begin(), sums.end()) + kBestScore * left < least) return {};
+    for (std::size_t k = begin; k < begin + std::min(left, kTogether); ++k) {
+      const auto scores = at.level.fourScores(at.cells[k].column + at.dx, at.cells[k].row + at.dy, step);
+      for (std::size_t i = 0; i < 4; ++i) sums[i] += scores[i];
+    }
+  }
+  return sums;
 }
 
 template <class Counts>
@@ -132,16 +163,19 @@ Branch WindowSearch::best(uint32_t least, const Counts& counts) {
 std::vector<Branch> WindowSearch::partsOf(const Branch& branch, uint32_t least) {
   std::vector<Branch> parts;
   const int half = 1 << (branch.level - 1);
-  Branch part = branch;
-  --part.level;
-  for (part.turn = branch.turn; part.turn < branch.turn + (1 << branch.turnLevel());
-       part.turn += 1 << part.turnLevel())
-    for (part.dy = branch.dy; part.dy <= branch.dy + half; part.dy += half)
-      for (part.dx = branch.dx; part.dx <= branch.dx + half; part.dx += half) {
-        if (!isInside(part)) continue;
-        part.sum = bound(part);
-        if (part.sum >= least) parts.push_back(part);
-      }
+  Branch first = branch;
+  --first.level;
+  for (; first.turn < branch.turn + (1 << branch.turnLevel()); first.turn += 1 << first.turnLevel()) {
+    if (!isInside(first)) continue;
+    const auto sums = fourBounds(first, half, least);
+    for (int i = 0; i < 4; ++i) {
+      Branch part = first;
+      part.dx += i % 2 * half;
+      part.dy += i / 2 * half;
+      part.sum = sums[static_cast<std::size_t>(i)];
+      if (isInside(part) && part.sum >= least) parts.push_back(part);
+    }
+  }
   std::sort(parts.begin(), parts.end(), isBetter);
   return parts;
 }
@@ -175,7 +209,7 @@ std::optional<WindowMatch> searchWindow(const ScorePyramid& map, const std::vect
                                         const RivalParams& rivals) {
   if (points.empty()) return std::nullopt;
   WindowSearch search(map, points, window);
-  const double whole = 255.0 * static_cast<double>(points.size());
+  const double whole = kBestScore * static_cast<double>(points.size());
   const auto atLeast = [whole](double score) { return static_cast<uint32_t>(std::ceil(whole * score)); };
   const Branch best = search.best(atLeast(min_score), [](const Branch&) { return true; });
   if (best.level < 0) return std::nullopt;

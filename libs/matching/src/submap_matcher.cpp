@@ -22,12 +22,16 @@ PosePrior loosePrior(const TPose2D& mean) {
 
 }  // namespace
 
+MatchableSubmap matchable(const GridSubmap& submap, const SubmapMatcherParams& params) {
+  return SubmapMatcher(submap, params).reference();
+}
+
 SubmapMatcher::SubmapMatcher(const GridSubmap& reference, const SubmapMatcherParams& params)
     : params_(params),
-      evidence_(reference.packedEvidence()),
       surfels_(surfelMapOf(reference, params.map)),
-      surface_(surfaceOf(surfels_, params.surface)),
-      pyramid_(*evidence_, params.pyramid),
+      reference_{surfaceOf(surfels_, params.surface),
+                 AgreementMap(*reference.packedEvidence(), params.agreement)},
+      pyramid_(*reference.packedEvidence(), params.pyramid),
       matcher_(params.matcher, params.map.search_radius) {}
 
 MatchResult SubmapMatcher::refine(const SubmapSurface& surface, const TPose2D& start) const {
@@ -45,8 +49,9 @@ const MatchResult& SubmapMatcher::better(const MatchResult& from_search,
   return same_place && from_centre.cost < from_search.cost ? from_centre : from_search;
 }
 
-std::optional<SubmapMatch> SubmapMatcher::match(const GridSubmap& other, const SubmapSurface& surface,
+std::optional<SubmapMatch> SubmapMatcher::match(const MatchableSubmap& other,
                                                 const PoseWindow& window) const {
+  const SubmapSurface& surface = other.surface;
   const auto found = searchWindow(pyramid_, surface.sparse, window, params_.min_score, params_.rivals);
   if (!found) return std::nullopt;
   const MatchResult refined = better(refine(surface, found->pose), refine(surface, window.centre));
@@ -56,9 +61,8 @@ std::optional<SubmapMatch> SubmapMatcher::match(const GridSubmap& other, const S
   match.information = refined.information;
   match.score = found->score;
   match.rival_score = found->rival_score;
-  const MapAgreement there = agreementOf(surface.dense, *evidence_, match.T_ref_other, params_.agreement);
-  const MapAgreement back =
-      agreementOf(surface_.dense, *other.packedEvidence(), TPose2D() - match.T_ref_other, params_.agreement);
+  const MapAgreement there = agreementOf(surface.dense, reference_.map, match.T_ref_other);
+  const MapAgreement back = agreementOf(reference_.surface.dense, other.map, TPose2D() - match.T_ref_other);
   match.hit_share = std::max(there.hit_share, back.hit_share);
   match.agreement = std::min(there.agreement, back.agreement);
   return match;

@@ -12,12 +12,10 @@
 #include <iterator>
 #include <sstream>
 
+#include <submap_slam/pipeline/submap_budget.h>
+
 namespace submap_slam {
 namespace {
-
-/** What the program takes with the largest map and pyramid that it makes without being asked for larger ones.
- */
-constexpr double kLeastMemory_MB = 300;
 
 /** The words of a list separated by commas or blanks. */
 std::vector<std::string> splitList(std::string text) {
@@ -107,10 +105,6 @@ std::shared_ptr<Form> joinerNamed(const std::vector<std::shared_ptr<Joiner>>& jo
 }
 
 }  // namespace
-
-std::size_t bytesForSubmaps(const JoiningParams& params) {
-  return static_cast<std::size_t>(1e6 * (params.memory - kLeastMemory_MB));
-}
 
 Configuration::Configuration(const std::vector<std::string>& plugin_files) {
   for (const auto& folder : pluginFolders()) loadPluginFolder(folder);

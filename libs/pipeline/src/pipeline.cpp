@@ -14,6 +14,7 @@
 #include <submap_slam/pipeline/results.h>
 #include <submap_slam/pipeline/run_files.h>
 #include <submap_slam/pipeline/stage_timer.h>
+#include <submap_slam/pipeline/submap_budget.h>
 #include <submap_slam/pipeline/submap_building.h>
 #include <submap_slam/rawlog/landmark_log.h>
 #include <submap_slam/report/run_report.h>
@@ -54,7 +55,7 @@ void requireFeatures(const LandmarkSubmaps& submaps) {
 }
 
 std::shared_ptr<SubmapStore> makeStore(const Configuration& config, const OutputDirectory& out) {
-  return SubmapStore::create(bytesForSubmaps(config.joining), out.file(kSpillFile));
+  return SubmapStore::create(submapBudget(config.joining.memory), out.file(kSpillFile));
 }
 
 void logEdits(const Edits& edits, const JoinerChain& joiners, Reporter& reporter) {
@@ -149,10 +150,10 @@ void refuseEdits(const Edits& edits, const MapForms& forms) {
 
 std::vector<SubmapProgress> writeJoined(const OutputDirectory& out, const GridSubmaps& submaps, const JoinedMap& joined,
                  Metrics& metrics) {
-  writeResults(out, submaps, joined);
   auto progress = mappingProgress(submaps, joined.frames);
   addProgressMetrics(metrics, progress);
   writeText(out.file("submaps.csv"), progressCsv(progress));
+  writeResults(out, submaps, joined);
   return progress;
 }
 

@@ -28,10 +28,10 @@ void writeMapSoFar(const OutputDirectory& out, const GridSubmaps& submaps, const
 }
 
 void writeResults(const OutputDirectory& out, const GridSubmaps& submaps, const JoinedMap& joined) {
+  writeSimpleMap(out.file("map.simplemap"), submaps, joined);  // the last one that reads submaps
   writeMapSoFar(out, submaps, joined);
   writeRosMap(out.file("map.yaml"), joined.map);
   writeGridMap(out.file("map.gridmap.gz"), joined.map);
-  writeSimpleMap(out.file("map.simplemap"), submaps, joined);
   const Trajectory trajectory = trajectoryOf(submaps, joined);
   writeScene(out.file("map.3Dscene"), joined.map, trajectory, joined.frames);
   writeSceneLog(out.file("map.rawlog"), joined.map, trajectory, joined.frames);

@@ -201,6 +201,8 @@ void SubmapLogWriter::finish() {
 
 std::vector<uint8_t> gzipMember(const mrpt::serialization::CSerializable& object) {
   mrpt::io::CMemoryStream raw;
+  constexpr uint64_t kGrowth = 1 << 22;  // its default, 4 kB, moves a large submap a thousand times
+  raw.setAllocBlockSize(kGrowth);
   mrpt::serialization::archiveFrom(raw) << object;
 
   z_stream deflater{};

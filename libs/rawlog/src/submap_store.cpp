@@ -42,11 +42,15 @@ class SubmapStore::Entry : public SubmapBulkSource {
   mutable std::list<const Entry*>::iterator position;  // in the list of the store, if kept
 };
 
-SubmapStore::SubmapStore(std::size_t memory_bytes, std::string spill_file)
-    : budget_(memory_bytes), spill_file_(std::move(spill_file)) {}
+SubmapStore::SubmapStore(Budget budget, std::string spill_file)
+    : budget_(std::move(budget)), spill_file_(std::move(spill_file)) {}
+
+std::shared_ptr<SubmapStore> SubmapStore::create(Budget budget, std::string spill_file) {
+  return std::shared_ptr<SubmapStore>(new SubmapStore(std::move(budget), std::move(spill_file)));
+}
 
 std::shared_ptr<SubmapStore> SubmapStore::create(std::size_t memory_bytes, std::string spill_file) {
-  return std::shared_ptr<SubmapStore>(new SubmapStore(memory_bytes, std::move(spill_file)));
+  return create([memory_bytes](std::size_t) { return memory_bytes; }, std::move(spill_file));
 }
 
 SubmapStore::~SubmapStore() {
@@ -118,7 +122,8 @@ void SubmapStore::keep(const Entry& entry, const BulkPtr& bulk) {
   entry.in_use = bulk;
   entry.kept_bytes = bytes;
   bytes_kept_ += bytes;
-  while (bytes_kept_ > budget_) {
+  const std::size_t budget = budget_(bytes_kept_);
+  while (bytes_kept_ > budget) {
     const Entry& oldest = *recent_.back();
     recent_.pop_back();
     bytes_kept_ -= oldest.kept_bytes;

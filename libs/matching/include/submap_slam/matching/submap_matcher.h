@@ -6,7 +6,6 @@
 #include <submap_slam/matching/submap_surface.h>
 #include <Eigen/Core>
 
-#include <memory>
 #include <optional>
 
 namespace submap_slam {
@@ -20,6 +19,13 @@ struct SubmapMatcherParams {
   RivalParams rivals;
   double min_score = 0.42;  ///< of the search of the window
 };
+
+/** What a submap shows to others that it is matched to, small enough to be kept for all submaps. */
+struct MatchableSubmap {
+  SubmapSurface surface;
+  AgreementMap map;
+};
+MatchableSubmap matchable(const GridSubmap& submap, const SubmapMatcherParams& params = {});
 
 /** Where another submap fits best into a reference submap, and how well. */
 struct SubmapMatch {
@@ -39,23 +45,20 @@ class SubmapMatcher {
  public:
   SubmapMatcher(const GridSubmap& reference, const SubmapMatcherParams& params);
 
-  const SubmapSurface& surface() const { return surface_; }
+  /** The reference as others need it. */
+  const MatchableSubmap& reference() const { return reference_; }
   const SurfelMap& surfels() const { return surfels_; }
 
-  /** Best match in the window of T_ref_other; empty if none reaches min_score.
-   * @param other    the other submap; its evidence is read only if the search of the window finds something
-   * @param surface  its surface */
-  std::optional<SubmapMatch> match(const GridSubmap& other, const SubmapSurface& surface,
-                                   const PoseWindow& window) const;
+  /** Best match in the window of T_ref_other; empty if none reaches min_score. */
+  std::optional<SubmapMatch> match(const MatchableSubmap& other, const PoseWindow& window) const;
 
  private:
   MatchResult refine(const SubmapSurface& surface, const mrpt::math::TPose2D& start) const;
   const MatchResult& better(const MatchResult& from_search, const MatchResult& from_centre) const;
 
   SubmapMatcherParams params_;
-  std::shared_ptr<const PackedEvidence> evidence_;
   SurfelMap surfels_;
-  SubmapSurface surface_;
+  MatchableSubmap reference_;
   ScorePyramid pyramid_;
   ScanMatcher matcher_;
 };

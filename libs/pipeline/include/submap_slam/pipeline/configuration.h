@@ -28,17 +28,13 @@ struct JoiningParams {
   double update_growth = 1.1;                    ///< then: submaps at an update / those at the one before
   double map_resolution = 0;                     ///< m per cell of the global map; 0: that of the submaps
   std::string landmark_joiner = "eif_tree";      ///< name of the joiner of landmark submaps
-  double memory = 350;                           ///< MB that the program may take while it joins, about
+  double memory = 200;                           ///< MB that the program may take while it joins, about
 };
 
 /** Section [output]. */
 struct OutputParams {
   bool report = true;  ///< write report.html
 };
-
-/** How much memory a SubmapStore may take: what the map, the joiners' own data and the program itself leave.
- */
-std::size_t bytesForSubmaps(const JoiningParams& params);
 
 /** Every parameter of a run, with one table that loads, checks, writes and documents them all. */
 class Configuration {

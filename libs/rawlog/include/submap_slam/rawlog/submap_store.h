@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -25,8 +26,12 @@ class SubmapStore : public std::enable_shared_from_this<SubmapStore> {
     uint64_t offset = 0;
   };
 
-  /** @param memory_bytes how much is kept; what readers still hold comes on top
-   * @param spill_file   written when it is first needed, removed with the store */
+  /** How many bytes may be kept, asked whenever something was read; the argument is how many are. */
+  using Budget = std::function<std::size_t(std::size_t kept_bytes)>;
+
+  /** @param budget     what readers still hold comes on top
+   * @param spill_file written when it is first needed, removed with the store */
+  static std::shared_ptr<SubmapStore> create(Budget budget, std::string spill_file);
   static std::shared_ptr<SubmapStore> create(std::size_t memory_bytes, std::string spill_file);
   ~SubmapStore();
   SubmapStore(const SubmapStore&) = delete;
@@ -48,14 +53,14 @@ class SubmapStore : public std::enable_shared_from_this<SubmapStore> {
   class Entry;
   using BulkPtr = std::shared_ptr<const SubmapBulk>;
 
-  SubmapStore(std::size_t memory_bytes, std::string spill_file);
+  SubmapStore(Budget budget, std::string spill_file);
   BulkPtr get(const Entry& entry);
   BulkPtr find(const Entry& entry);
   void keep(const Entry& entry, const BulkPtr& bulk);
   void forget(const Entry& entry);
   Home spill(const GridSubmap& submap);
 
-  const std::size_t budget_;
+  const Budget budget_;
   const std::string spill_file_;
   uint64_t spilled_bytes_ = 0;
 
