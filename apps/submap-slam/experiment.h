@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "parameter_variation.h"
+
 namespace submap_slam {
 
 /** Section [data NAME]: a simulated world, or a recording with something to judge the result by. */
@@ -22,6 +24,7 @@ struct ExperimentSetting {
   std::string name;
   std::string baseline;               ///< empty: the pipeline of `map`; else whose poses are taken instead
   std::vector<std::string> settings;  ///< "section.key=value"
+  ParameterVariation variation;       ///< on top of the settings, another one for each seed
 };
 
 /** A figure of a cell and how tables show it. */
@@ -37,6 +40,7 @@ struct Experiment {
   std::vector<ExperimentSetting> settings;
   std::vector<uint64_t> seeds;
   std::vector<ExperimentColumn> columns;
+  bool worst = false;  ///< tables show the greatest value over the seeds too
 };
 
 /** All columns there are. */

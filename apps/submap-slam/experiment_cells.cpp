@@ -73,7 +73,9 @@ std::unique_ptr<Configuration> configurationOf(const Cell& cell) {
   ConfigurationOptions options;
   options.settings = cell.setting.settings;
   options.seed = cell.seed;
-  return loadConfiguration(options);
+  auto config = loadConfiguration(options);
+  vary(config->table, cell.setting.variation, cell.seed);
+  return config;
 }
 
 /** Everything that a result depends on; files of recordings by name and size. */

@@ -19,11 +19,20 @@ std::optional<TPose2D> incrementBetween(const Frame& a, const Frame& b) {
   return *b.odometry - *a.odometry;
 }
 
+/** The motion from a to b by scans, seen from where odometry has it (m, m, rad); 0 without odometry. */
+Eigen::Vector3d disagreement(const Frame& a, const Frame& b, const TPose2D& by_scans) {
+  const auto by_odometry = incrementBetween(a, b);
+  if (!by_odometry) return Eigen::Vector3d::Zero();
+  const TPose2D off = by_scans - *by_odometry;
+  return {off.x, off.y, mrpt::math::wrapToPi(off.phi)};
+}
+
 /** Frames [warm_up, end) of a stretch of which [first, end) are the submap's own; `end` is the next submap's
  * first frame or the end of the stretch. */
 struct Span {
   std::size_t warm_up = 0, first = 0, end = 0;
   bool has_successor = false;
+  bool ends_in_doubt = false;  ///< by a doubtful step: what lies before tells nothing of the map behind
 };
 
 /** First of the frames that prepare the matching map of a submap starting at `first`, be it in the middle of
@@ -62,7 +71,18 @@ struct Tracked {
   LocalPath path;  ///< in the frame of the tracker
   SubmapStatistics statistics;
   bool lost = false;  ///< the last scans could not be matched
+  Eigen::Vector3d last_step_off =
+      Eigen::Vector3d::Zero();  ///< what a doubtful last step may be off by (m, m, rad)
 };
+
+/** A step of which scans and odometry say quite different things, or scans nothing at all. */
+struct DoubtfulStep {
+  std::size_t to;       ///< frame that it ends at
+  Eigen::Vector3d off;  ///< what it may be off by (m, m, rad)
+};
+
+/** What a step may be off by of which only odometry says something that the scans don't bear out. */
+const Eigen::Vector3d kAnywhere(5, 5, 1);
 
 /** Builds one submap; lives as long as that takes. */
 class SubmapBuild {
@@ -71,15 +91,20 @@ class SubmapBuild {
               const std::vector<LaserPoints>& scans, SubmapTracker& tracker)
       : params_(params), frames_(frames), scans_(scans), tracker_(tracker) {}
 
-  /** Tracks, refines and renders; shortens `span` if a decision rule closes the submap early. */
+  /** Tracks, refines and renders; shortens `span` if a decision rule closes the submap early. Empty if the
+   * warm-up holds a doubtful step: it begins after that now, and wants a new tracker. */
   GridSubmap::Ptr run(Span& span) {
-    Tracked tracked = track(span);
-    if (params_.refine) refine(span, tracked.path);
-    return assemble(span, tracked);
+    std::optional<Tracked> tracked = track(span);
+    if (!tracked) return {};
+    if (params_.refine) refine(span, tracked->path);
+    return assemble(span, *tracked);
   }
 
  private:
-  Tracked track(Span& span);
+  std::optional<Tracked> track(Span& span);
+  std::optional<DoubtfulStep> doubtfulStep(const Span& span, std::size_t from, std::size_t to) const;
+  bool fitsNothing(std::size_t k) const;
+  std::optional<Eigen::Vector3d> contradiction(const Span& span, std::size_t i) const;
   void refine(const Span& span, LocalPath& path) const;
   GridSubmap::Ptr assemble(const Span& span, const Tracked& tracked) const;
   void addScores(SubmapStatistics& statistics, const Span& span, const LocalPath& path) const;
@@ -93,23 +118,78 @@ class SubmapBuild {
   SubmapTracker& tracker_;
 };
 
-Tracked SubmapBuild::track(Span& span) {
+std::optional<Tracked> SubmapBuild::track(Span& span) {
   ClosingRules rules(params_.closing);
   DriftCovariance drift(params_.drift);
   std::string closed_because = span.has_successor ? "stretch ended" : "log ended";
+  const auto close = [&](std::size_t end, const std::string& reason) {
+    span.end = end;
+    span.has_successor = true;
+    closed_because = reason;
+  };
+  Eigen::Vector3d last_step_off = Eigen::Vector3d::Zero();
+  std::size_t decided = span.warm_up;  // up to this frame it is known which hypothesis is right
   for (std::size_t i = span.warm_up; i <= lastFrame(span); ++i) {
     tracker_.step(scans_[i], i > span.warm_up ? incrementBetween(frames_[i - 1], frames_[i]) : std::nullopt);
-    if (i <= span.first || i == lastFrame(span)) continue;
-    advance(drift, tracker_.path(), tracker_.path().size() - 1);
-    const std::string reason = rules.check(tracker_, drift);
-    if (reason.empty()) continue;
-    closed_because = reason;
-    span.end = i;
-    span.has_successor = true;
+    if (i > span.first && i < lastFrame(span)) {
+      advance(drift, tracker_.path(), tracker_.path().size() - 1);
+      const std::string reason = rules.check(tracker_, drift);
+      if (!reason.empty()) close(i, reason);
+    }
+    if (tracker_.undecided() && i < lastFrame(span)) continue;
+    if (const auto doubtful = doubtfulStep(span, decided, i)) {
+      if (doubtful->to <= span.first) {
+        span.warm_up = doubtful->to;
+        return std::nullopt;
+      }
+      if (doubtful->to < lastFrame(span)) close(doubtful->to, "match in doubt");
+      last_step_off = doubtful->off;
+      span.ends_in_doubt = true;
+    }
+    decided = i;
   }
-  Tracked tracked{tracker_.path(), tracker_.statistics(), rules.lost()};
+  Tracked tracked{tracker_.path(), tracker_.statistics(), rules.lost(), last_step_off};
   tracked.statistics.closed_because = closed_because;
   return tracked;
+}
+
+/** The first one that ends in (from, to]. */
+std::optional<DoubtfulStep> SubmapBuild::doubtfulStep(const Span& span, std::size_t from,
+                                                      std::size_t to) const {
+  for (std::size_t i = from + 1; i <= to; ++i) {
+    if (fitsNothing(i - span.warm_up)) return DoubtfulStep{i, kAnywhere};
+    if (const auto off = contradiction(span, i)) return DoubtfulStep{i, *off};
+  }
+  return std::nullopt;
+}
+
+/** True for a scan that shows nothing of what the scans before it did: the robot was carried, or the log has
+ * a gap. */
+bool SubmapBuild::fitsNothing(std::size_t k) const {
+  constexpr std::size_t kFewest = 5;  // scans, to know how well they usually fit
+  const LocalPath& path = tracker_.path();
+  const auto share = static_cast<double>(path[k].inlier_share);
+  return k >= kFewest && share < params_.closing.lost_below &&
+         usualInlierShare(path, k) >= 2 * params_.closing.lost_below;
+}
+
+/** What scans and odometry disagree by over the step that ends at frame i, if that is much. Odometry may also
+ * be right since it was right last: where it catches up. */
+std::optional<Eigen::Vector3d> SubmapBuild::contradiction(const Span& span, std::size_t i) const {
+  const LocalPath& path = tracker_.path();
+  const ClosingParams& limits = params_.closing;
+  const auto offSince = [&](std::size_t k) {
+    return disagreement(frames_[k], frames_[i], path[i - span.warm_up].pose - path[k - span.warm_up].pose);
+  };
+  const auto isFar = [&](const Eigen::Vector3d& off) {
+    return off.head<2>().norm() > limits.doubtful_step_xy || std::abs(off.z()) > limits.doubtful_step_phi;
+  };
+  const Eigen::Vector3d off = offSince(i - 1);
+  if (!isFar(off)) return std::nullopt;
+  std::size_t agreed = i - 1;
+  while (agreed > span.warm_up && !path[agreed - span.warm_up].by_odometry) --agreed;
+  if (!isFar(offSince(agreed))) return std::nullopt;
+  return off;
 }
 
 void SubmapBuild::refine(const Span& span, LocalPath& path) const {
@@ -143,6 +223,8 @@ mrpt::math::CMatrixDouble33 SubmapBuild::endCovariance(const Span& span, const T
     const double xy = params_.closing.max_sigma_xy, phi = params_.closing.max_sigma_phi;
     out.asEigen().diagonal() += Eigen::Vector3d(xy * xy, xy * xy, phi * phi);
   }
+  const double off_xy2 = tracked.last_step_off.head<2>().squaredNorm(), off_phi = tracked.last_step_off.z();
+  out.asEigen().diagonal() += Eigen::Vector3d(off_xy2, off_xy2, off_phi * off_phi);
   return out;
 }
 
@@ -193,11 +275,17 @@ std::vector<GridSubmap::Ptr> GridMapper::map(const Stretch& stretch) const {
 
   std::vector<GridSubmap::Ptr> submaps;
   const std::size_t end = stretch.warm_up + stretch.ownFrames();
+  bool after_doubt = false;
   for (std::size_t first = stretch.warm_up; first < end;) {
-    Span span{warmUpBegin(stretch, first), first, end, !stretch.last};
-    const auto tracker = track(stretch.frames[first].index);
-    submaps.push_back(SubmapBuild(params_, stretch.frames, scans, *tracker).run(span));
+    Span span{after_doubt ? first : warmUpBegin(stretch, first), first, end, !stretch.last};
+    GridSubmap::Ptr submap;
+    while (!submap) {
+      const auto tracker = track(stretch.frames[first].index);
+      submap = SubmapBuild(params_, stretch.frames, scans, *tracker).run(span);
+    }
+    submaps.push_back(submap);
     first = span.end;
+    after_doubt = span.ends_in_doubt;
   }
   return submaps;
 }
