@@ -1,5 +1,5 @@
-// Logs with something wrong in them, from scans to the joined map: the map is right, or the result says where it may
-// not be.
+// Logs with something wrong in them, from scans to the joined map: the map is right, or the result says where
+// it may not be.
 #include <gtest/gtest.h>
 #include <submap_slam/core/doubtful_ends.h>
 
@@ -21,13 +21,13 @@ struct Outcome {
   JoinedMap joined;
   std::string breaks;
 
-  /** Largest distance of a scan of the frames [begin, end) from the truth, seen from the first of them (m). */
+  /** Largest distance of a scan of the frames [begin, end) from the truth, seen from the first of them (m).
+   */
   double worst(const Trajectory& truth, std::size_t begin, std::size_t end) const {
     const Trajectory poses = trajectoryOf(submaps, joined);
     double worst = 0;
     for (std::size_t k = begin; k < end; ++k) {
-      const PoseError error =
-          poseError(poses[k].pose - poses[begin].pose, truth[k].pose - truth[begin].pose);
+      const PoseError error = poseError(poses[k].pose - poses[begin].pose, truth[k].pose - truth[begin].pose);
       worst = std::max(worst, error.distance());
     }
     return worst;

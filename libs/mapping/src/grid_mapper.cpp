@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "doubtful_steps.h"
+
 namespace submap_slam {
 namespace {
 
@@ -17,14 +19,6 @@ using mrpt::math::TPose2D;
 std::optional<TPose2D> incrementBetween(const Frame& a, const Frame& b) {
   if (!a.odometry || !b.odometry) return std::nullopt;
   return *b.odometry - *a.odometry;
-}
-
-/** The motion from a to b by scans, seen from where odometry has it (m, m, rad); 0 without odometry. */
-Eigen::Vector3d disagreement(const Frame& a, const Frame& b, const TPose2D& by_scans) {
-  const auto by_odometry = incrementBetween(a, b);
-  if (!by_odometry) return Eigen::Vector3d::Zero();
-  const TPose2D off = by_scans - *by_odometry;
-  return {off.x, off.y, mrpt::math::wrapToPi(off.phi)};
 }
 
 /** Frames [warm_up, end) of a stretch of which [first, end) are the submap's own; `end` is the next submap's
@@ -75,21 +69,13 @@ struct Tracked {
       Eigen::Vector3d::Zero();  ///< what a doubtful last step may be off by (m, m, rad)
 };
 
-/** A step of which scans and odometry say quite different things, or scans nothing at all. */
-struct DoubtfulStep {
-  std::size_t to;       ///< frame that it ends at
-  Eigen::Vector3d off;  ///< what it may be off by (m, m, rad)
-};
-
-/** What a step may be off by of which only odometry says something that the scans don't bear out. */
-const Eigen::Vector3d kAnywhere(5, 5, 1);
-
 /** Builds one submap; lives as long as that takes. */
 class SubmapBuild {
  public:
   SubmapBuild(const GridMapperParams& params, const std::vector<Frame>& frames,
-              const std::vector<LaserPoints>& scans, SubmapTracker& tracker)
-      : params_(params), frames_(frames), scans_(scans), tracker_(tracker) {}
+              const std::vector<LaserPoints>& scans, const DoubtfulSteps& doubtful_steps,
+              SubmapTracker& tracker)
+      : params_(params), frames_(frames), scans_(scans), doubtful_steps_(doubtful_steps), tracker_(tracker) {}
 
   /** Tracks, refines and renders; shortens `span` if a decision rule closes the submap early. Empty if the
    * warm-up holds a doubtful step: it begins after that now, and wants a new tracker. */
@@ -102,9 +88,6 @@ class SubmapBuild {
 
  private:
   std::optional<Tracked> track(Span& span);
-  std::optional<DoubtfulStep> doubtfulStep(const Span& span, std::size_t from, std::size_t to) const;
-  bool fitsNothing(std::size_t k) const;
-  std::optional<Eigen::Vector3d> contradiction(const Span& span, std::size_t i) const;
   void refine(const Span& span, LocalPath& path) const;
   GridSubmap::Ptr assemble(const Span& span, const Tracked& tracked) const;
   void addScores(SubmapStatistics& statistics, const Span& span, const LocalPath& path) const;
@@ -115,6 +98,7 @@ class SubmapBuild {
   const GridMapperParams& params_;
   const std::vector<Frame>& frames_;
   const std::vector<LaserPoints>& scans_;
+  const DoubtfulSteps& doubtful_steps_;
   SubmapTracker& tracker_;
 };
 
@@ -137,7 +121,8 @@ std::optional<Tracked> SubmapBuild::track(Span& span) {
       if (!reason.empty()) close(i, reason);
     }
     if (tracker_.undecided() && i < lastFrame(span)) continue;
-    if (const auto doubtful = doubtfulStep(span, decided, i)) {
+    const bool last = span.has_successor && i == span.end;
+    if (const auto doubtful = doubtful_steps_.find(tracker_.path(), span.warm_up, decided, i, last)) {
       if (doubtful->to <= span.first) {
         span.warm_up = doubtful->to;
         return std::nullopt;
@@ -151,45 +136,6 @@ std::optional<Tracked> SubmapBuild::track(Span& span) {
   Tracked tracked{tracker_.path(), tracker_.statistics(), rules.lost(), last_step_off};
   tracked.statistics.closed_because = closed_because;
   return tracked;
-}
-
-/** The first one that ends in (from, to]. */
-std::optional<DoubtfulStep> SubmapBuild::doubtfulStep(const Span& span, std::size_t from,
-                                                      std::size_t to) const {
-  for (std::size_t i = from + 1; i <= to; ++i) {
-    if (fitsNothing(i - span.warm_up)) return DoubtfulStep{i, kAnywhere};
-    if (const auto off = contradiction(span, i)) return DoubtfulStep{i, *off};
-  }
-  return std::nullopt;
-}
-
-/** True for a scan that shows nothing of what the scans before it did: the robot was carried, or the log has
- * a gap. */
-bool SubmapBuild::fitsNothing(std::size_t k) const {
-  constexpr std::size_t kFewest = 5;  // scans, to know how well they usually fit
-  const LocalPath& path = tracker_.path();
-  const auto share = static_cast<double>(path[k].inlier_share);
-  return k >= kFewest && share < params_.closing.lost_below &&
-         usualInlierShare(path, k) >= 2 * params_.closing.lost_below;
-}
-
-/** What scans and odometry disagree by over the step that ends at frame i, if that is much. Odometry may also
- * be right since it was right last: where it catches up. */
-std::optional<Eigen::Vector3d> SubmapBuild::contradiction(const Span& span, std::size_t i) const {
-  const LocalPath& path = tracker_.path();
-  const ClosingParams& limits = params_.closing;
-  const auto offSince = [&](std::size_t k) {
-    return disagreement(frames_[k], frames_[i], path[i - span.warm_up].pose - path[k - span.warm_up].pose);
-  };
-  const auto isFar = [&](const Eigen::Vector3d& off) {
-    return off.head<2>().norm() > limits.doubtful_step_xy || std::abs(off.z()) > limits.doubtful_step_phi;
-  };
-  const Eigen::Vector3d off = offSince(i - 1);
-  if (!isFar(off)) return std::nullopt;
-  std::size_t agreed = i - 1;
-  while (agreed > span.warm_up && !path[agreed - span.warm_up].by_odometry) --agreed;
-  if (!isFar(offSince(agreed))) return std::nullopt;
-  return off;
 }
 
 void SubmapBuild::refine(const Span& span, LocalPath& path) const {
@@ -273,6 +219,7 @@ std::vector<GridSubmap::Ptr> GridMapper::map(const Stretch& stretch) const {
   std::vector<LaserPoints> scans;
   for (const auto& frame : stretch.frames) scans.push_back(toLaserPoints(frame, max_range));
 
+  const DoubtfulSteps doubtful_steps(params_.closing, stretch.frames);
   std::vector<GridSubmap::Ptr> submaps;
   const std::size_t end = stretch.warm_up + stretch.ownFrames();
   bool after_doubt = false;
@@ -281,7 +228,7 @@ std::vector<GridSubmap::Ptr> GridMapper::map(const Stretch& stretch) const {
     GridSubmap::Ptr submap;
     while (!submap) {
       const auto tracker = track(stretch.frames[first].index);
-      submap = SubmapBuild(params_, stretch.frames, scans, *tracker).run(span);
+      submap = SubmapBuild(params_, stretch.frames, scans, doubtful_steps, *tracker).run(span);
     }
     submaps.push_back(submap);
     first = span.end;

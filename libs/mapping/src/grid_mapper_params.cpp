@@ -100,9 +100,9 @@ void describe(ParameterTable& table, ClosingParams& p) {
   table.add("max_sigma_phi", p.max_sigma_phi, "rad", kPositive,
             "A heading less certain than this closes the submap");
   table.add("doubtful_step_xy", p.doubtful_step_xy, "m", kPositive,
-            "Where scans and odometry disagree by more than this on a single step, the submap ends, so that "
-            "joining can "
-            "decide who is right");
+            "Where odometry or the scans leap and they disagree by more than this, the submap ends, so that "
+            "joining can decide "
+            "who is right");
   table.add("doubtful_step_phi", p.doubtful_step_phi, "rad", kPositive, "The same for the turn");
 }
 

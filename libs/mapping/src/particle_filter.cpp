@@ -2,6 +2,7 @@
 
 #include <mrpt/math/wrap2pi.h>
 #include <mrpt/poses/CPose2D.h>
+#include <submap_slam/mapping/stray_scans.h>
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
@@ -192,9 +193,13 @@ void ParticleFilter::extend(Particle& particle, const LaserPoints& scan, const P
   PathNode node;
   node.take(proposal.match);
   node.by_odometry = proposal.by_odometry;
-  node.key = !scan.points.empty() && isKeyPose(particle.path, node.pose, params_.keys);
-  if (node.key) particle.map.insert(scan, node.pose);
+  const bool far = !scan.points.empty() && isKeyPose(particle.path, node.pose, params_.keys);
   particle.path.push_back(node);
+  const std::size_t strays = scansThatFitNothing(particle.path, particle.path.size() - 1);
+  if (far && (strays == 0 || strays > kStrayScans)) {
+    particle.path.back().key = true;
+    particle.map.insert(scan, node.pose);
+  }
   particle.log_weight += proposal.log_weight;
 }
 
