@@ -5,8 +5,6 @@
 #include <mrpt/math/wrap2pi.h>
 #include <Eigen/LU>
 
-#include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include <submap_slam/core/relative_pose.h>
@@ -97,9 +95,7 @@ void NodeProblem::placeBlocks(const FrameGraph& graph) {
 }
 
 void NodeProblem::addIntra() {
-  const auto sigma = [](double least, double variance) { return std::max(least, std::sqrt(variance)); };
-  const Matrix3d covariance = variances(sigma(params_.intra_sigma_xy, odometry_.node_variance_xy),
-                                        sigma(params_.intra_sigma_phi, odometry_.node_variance_phi));
+  const Matrix3d covariance = variances(params_.intra_sigma_xy, params_.intra_sigma_phi);
   for (std::size_t k = 0; k < submaps_.size(); ++k)
     for (std::size_t g = 1; g < blocks_[k].size(); ++g)
       add(node(k, g).pose, covariance, blocks_[k].front(), blocks_[k][g]);

@@ -14,8 +14,6 @@ using mrpt::math::TPose2D;
 
 /** Fewer steps say too little of a log. */
 constexpr std::size_t kFewestSteps = 30;
-/** Graph nodes of a long step: a metre, over which a slip is still unlikely. */
-constexpr std::size_t kSeveral = 4;
 /** Steps that are shorter tell nothing of the gains. */
 constexpr double kShortest_m = 0.05, kSmallest_rad = 0.05;
 /** Odometry is not believed beyond 1 mm and 0.2 mrad over a metre. */
@@ -36,12 +34,11 @@ struct Step {
   TPose2D matched, odometry;
 };
 
-/** All steps over this many graph nodes. */
-std::vector<Step> stepsOf(const GridSubmaps& submaps, const GraphNodes& nodes, std::size_t lag) {
+std::vector<Step> stepsOf(const GridSubmaps& submaps, const GraphNodes& nodes) {
   std::vector<Step> steps;
   for (std::size_t k = 0; k < submaps.size(); ++k)
-    for (std::size_t g = lag; g < nodes[k].size(); ++g) {
-      const SubmapNode &a = submaps[k]->nodes[nodes[k][g - lag]], &b = submaps[k]->nodes[nodes[k][g]];
+    for (std::size_t g = 1; g < nodes[k].size(); ++g) {
+      const SubmapNode &a = submaps[k]->nodes[nodes[k][g - 1]], &b = submaps[k]->nodes[nodes[k][g]];
       if (const auto odometry = odometryBetween(a, b)) steps.push_back({b.pose - a.pose, *odometry});
     }
   return steps;
@@ -64,51 +61,19 @@ void estimateGains(OdometryModel& model, const std::vector<Step>& steps) {
   if (phi.size() >= kFewestSteps) model.gain_phi = plausible(1 / quantile(phi, 0.5));
 }
 
-/** How much odometry and scans disagree over steps of a kind: variances, read where slips seldom reach. */
-struct Disagreement {
-  std::size_t steps = 0;
-  double length = 0;                   ///< mean, see odometryLength
-  double xy = 0, phi = 0;              ///< m² along each axis, rad²
-  double xy_per_m = 0, phi_per_m = 0;  ///< the same of e² / length
-};
-
-Disagreement disagreementOf(const OdometryModel& model, const std::vector<Step>& steps) {
-  std::vector<double> xy, phi, xy_per_m, phi_per_m;
-  Disagreement out;
+void estimateVariances(OdometryModel& model, const std::vector<Step>& steps) {
+  std::vector<double> xy, phi;
   for (const Step& step : steps) {
     const double length = odometryLength(step.matched);
     if (length <= 0) continue;
     const Eigen::Vector3d e = relationError({}, step.matched, model.corrected(step.odometry)).e;
-    out.length += length;
-    xy.push_back(e.head<2>().squaredNorm());
-    phi.push_back(e.z() * e.z());
-    xy_per_m.push_back(xy.back() / length);
-    phi_per_m.push_back(phi.back() / length);
+    xy.push_back(e.head<2>().squaredNorm() / length);
+    phi.push_back(e.z() * e.z() / length);
   }
-  out.steps = xy.size();
-  if (xy.empty()) return out;
-  out.length /= static_cast<double>(xy.size());
-  out.xy = quantile(xy, kWorst) / kChi2Two;
-  out.phi = quantile(phi, kWorst) / kChi2One;
-  out.xy_per_m = quantile(xy_per_m, kWorst) / kChi2Two;
-  out.phi_per_m = quantile(phi_per_m, kWorst) / kChi2One;
-  return out;
-}
-
-/** The error of a matched pose is another one at each node, that of odometry adds up along the path. So over
- * steps of length ℓ they disagree by 2 m + v ℓ, m the variance of a match and v that of odometry, both found
- * from steps of two lengths. */
-void estimateVariances(OdometryModel& model, const Disagreement& one, const Disagreement& several) {
-  model.steps = one.steps;
-  const double longer = several.length - one.length;
-  const auto perLength = [longer](double at_one, double at_several, double at_most, double at_least) {
-    const double slope = longer > 0 ? (at_several - at_one) / longer : at_most;
-    return std::max(at_least, std::min(slope, at_most));
-  };
-  model.variance_xy = perLength(one.xy, several.xy, one.xy_per_m, kLeastVarianceXy);
-  model.variance_phi = perLength(one.phi, several.phi, one.phi_per_m, kLeastVariancePhi);
-  model.node_variance_xy = std::max(0.0, one.xy - model.variance_xy * one.length) / 2;
-  model.node_variance_phi = std::max(0.0, one.phi - model.variance_phi * one.length) / 2;
+  if (xy.size() < kFewestSteps) return;
+  model.steps = xy.size();
+  model.variance_xy = std::max(kLeastVarianceXy, quantile(xy, kWorst) / kChi2Two);
+  model.variance_phi = std::max(kLeastVariancePhi, quantile(phi, kWorst) / kChi2One);
 }
 
 }  // namespace
@@ -146,12 +111,10 @@ Eigen::Matrix3d OdometryModel::covariance(double length) const {
 }
 
 OdometryModel odometryModelOf(const GridSubmaps& submaps, const GraphNodes& nodes) {
-  const std::vector<Step> steps = stepsOf(submaps, nodes, 1);
+  const std::vector<Step> steps = stepsOf(submaps, nodes);
   OdometryModel model;
   estimateGains(model, steps);
-  const Disagreement one = disagreementOf(model, steps);
-  if (one.steps < kFewestSteps) return model;
-  estimateVariances(model, one, disagreementOf(model, stepsOf(submaps, nodes, kSeveral)));
+  estimateVariances(model, steps);
   return model;
 }
 

@@ -22,15 +22,13 @@ std::optional<mrpt::math::TPose2D> odometryBetween(const SubmapNode& a, const Su
 /** How far to believe the odometry of a log, from what the scans say: the weights of its residuals, for
  * translation and rotation apart.
  *
- * Disagreement that grows with the length of the step is put down to odometry, that which does not to the
- * matches. Where scans see nothing, along a corridor, the matched poses follow odometry and agree with it
- * whatever its error.
+ * All disagreement between odometry and scans is put down to odometry. Where scans see nothing, along a
+ * corridor, the matched poses follow odometry and agree with it whatever its error.
  */
 struct OdometryModel {
   double gain_xy = 1, gain_phi = 1;          ///< true motion / odometry's motion
   double variance_xy = 0, variance_phi = 0;  ///< per length (m², rad²): see odometryLength; 0: no odometry
-  double node_variance_xy = 0, node_variance_phi = 0;  ///< of a node's matched pose, anew at each (m², rad²)
-  std::size_t steps = 0;                               ///< from which that is known
+  std::size_t steps = 0;                     ///< from which that is known
 
   bool known() const { return variance_xy > 0 && variance_phi > 0; }
   mrpt::math::TPose2D corrected(const mrpt::math::TPose2D& odometry) const;

@@ -23,13 +23,9 @@ OdometryResidual residualOf(const std::string& name) {
 
 std::string describeOdometry(const OdometryModel& odometry) {
   if (!odometry.known()) return "no odometry to fuse";
-  return fmt::format(
-      "odometry strays {:.0f} mm and {:.2f} deg per root metre, scaled by {:.3f} and {:.3f}; matches err by "
-      "{:.0f} mm "
-      "and {:.2f} deg",
-      1e3 * std::sqrt(odometry.variance_xy), std::sqrt(odometry.variance_phi) * 180 / M_PI, odometry.gain_xy,
-      odometry.gain_phi, 1e3 * std::sqrt(odometry.node_variance_xy),
-      std::sqrt(odometry.node_variance_phi) * 180 / M_PI);
+  return fmt::format("odometry strays {:.0f} mm and {:.2f} deg per root metre, scaled by {:.3f} and {:.3f}",
+                     1e3 * std::sqrt(odometry.variance_xy), std::sqrt(odometry.variance_phi) * 180 / M_PI,
+                     odometry.gain_xy, odometry.gain_phi);
 }
 
 /** The chain as the fusion leaves it, so that a joiner behind does not go back to the end poses; with less

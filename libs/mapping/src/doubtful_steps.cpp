@@ -63,8 +63,8 @@ bool DoubtfulSteps::isLeap(const TPose2D& step) const {
   return distanceOf(step) > leap_xy_ || turnOf(step) > leap_phi_;
 }
 
-/** What scans and odometry disagree by over the step that ends at frame i, if that is much. Odometry may also
- * be right since it was right last: where it catches up. */
+/** Standard deviations of the step that ends at frame i, if scans and odometry say quite different things of
+ * it. Odometry may also be right since it was right last: where it catches up. */
 std::optional<Eigen::Vector3d> DoubtfulSteps::contradiction(const LocalPath& path, std::size_t begin,
                                                             std::size_t i) const {
   const auto matched = [&](std::size_t k) { return path[i - begin].pose - path[k - begin].pose; };
@@ -82,7 +82,7 @@ std::optional<Eigen::Vector3d> DoubtfulSteps::contradiction(const LocalPath& pat
   std::size_t agreed = i - 1;
   while (agreed > begin && !path[agreed - begin].by_odometry) --agreed;
   if (frames_[agreed].odometry && !isFar(off(agreed))) return std::nullopt;
-  return by;
+  return 0.5 * by;  // the truth is somewhere between the two
 }
 
 }  // namespace submap_slam

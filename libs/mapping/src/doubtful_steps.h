@@ -14,7 +14,7 @@ namespace submap_slam {
 /** A step that may be wrong as a whole. */
 struct DoubtfulStep {
   std::size_t to;       ///< frame that it ends at
-  Eigen::Vector3d off;  ///< what it may be off by (m, m, rad)
+  Eigen::Vector3d off;  ///< standard deviations of what it may be off by (m, m, rad)
 };
 
 /** Finds steps at which the path may be broken:
