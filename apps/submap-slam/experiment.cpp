@@ -26,6 +26,7 @@ const std::string kDataPrefix = "data ", kSettingPrefix = "setting ", kSimulatio
 /** Section [experiment]: lists of words. */
 struct Lists {
   std::string title, data, settings, seeds = "1", columns;
+  bool worst = false;
 };
 
 void describe(ParameterTable& table, Lists& lists) {
@@ -35,6 +36,7 @@ void describe(ParameterTable& table, Lists& lists) {
   table.add("settings", lists.settings, "Names of the sections [setting NAME] to use");
   table.add("seeds", lists.seeds, "Seeds of simulation and mapping; one cell for each");
   table.add("columns", lists.columns, "Figures to tabulate");
+  table.add("worst", lists.worst, "Show the greatest value over the seeds too");
 }
 
 std::vector<std::string> wordsOf(std::string text) {
@@ -165,6 +167,9 @@ void checkSimulation(const ExperimentFile& file, const std::vector<IniEntry>& ke
       file.at(entry, [&] { loadScenario(world, "", {assignmentOf(entry)}); });
 }
 
+/** Keys of [setting NAME] that are no parameters of the pipeline. */
+bool isOwnKey(const std::string& key) { return key == "baseline" || key == "vary" || key == "varied"; }
+
 /** Throws ConfigError or PluginError for what the pipeline would refuse. */
 void checkSettings(const ExperimentFile& file, const IniEntry& heading, const std::vector<IniEntry>& keys) {
   ConfigurationOptions options;  // plugins first: they bring parameters themselves
@@ -172,7 +177,7 @@ void checkSettings(const ExperimentFile& file, const IniEntry& heading, const st
     if (entry.key == "plugins.load") options.settings.push_back(assignmentOf(entry));
   const auto config = loadConfiguration(options);
   for (const auto& entry : keys)
-    if (entry.key != "baseline") file.at(entry, [&] { config->table.set(assignmentOf(entry)); });
+    if (!isOwnKey(entry.key)) file.at(entry, [&] { config->table.set(assignmentOf(entry)); });
   file.at(heading, [&] { config->joinerChain(); });
 }
 
@@ -195,15 +200,38 @@ ExperimentData readData(const ExperimentFile& file, const std::string& name, con
   return data;
 }
 
+double parseShare(const IniEntry& entry) {
+  double share = 0;
+  ParameterTable table;
+  table.section(entry.section, "");
+  table.add(entry.key, share, "", {0, 1}, "");
+  table.set(entry.section, entry.key, entry.value);
+  return share;
+}
+
 void setSetting(ExperimentSetting& setting, const IniEntry& entry) {
-  if (entry.key != "baseline") {
+  if (entry.key == "vary") {
+    setting.variation.share = parseShare(entry);
+  } else if (entry.key == "varied") {
+    setting.variation.keys = wordsOf(entry.value);
+  } else if (entry.key != "baseline") {
     setting.settings.push_back(assignmentOf(entry));
-    return;
+  } else {
+    setting.baseline = entry.value;
+    if (!setting.baseline.empty() && setting.baseline != "odometry" && setting.baseline != "truth")
+      throw ConfigError(
+          fmt::format("[{}] baseline = '{}': expected odometry or truth", entry.section, setting.baseline));
   }
-  setting.baseline = entry.value;
-  if (!setting.baseline.empty() && setting.baseline != "odometry" && setting.baseline != "truth")
-    throw ConfigError(
-        fmt::format("[{}] baseline = '{}': expected odometry or truth", entry.section, setting.baseline));
+}
+
+/** Throws ConfigError for a variation of keys that cannot be varied. */
+void checkVariation(const ExperimentFile& file, const IniEntry& heading, const std::vector<IniEntry>& keys,
+                    const ExperimentSetting& setting) {
+  ConfigurationOptions options;
+  for (const auto& entry : keys)
+    if (!isOwnKey(entry.key)) options.settings.push_back(assignmentOf(entry));
+  const auto config = loadConfiguration(options);
+  file.at(heading, [&] { vary(config->table, setting.variation, 0); });
 }
 
 ExperimentSetting readSetting(const ExperimentFile& file, const std::string& name) {
@@ -215,6 +243,7 @@ ExperimentSetting readSetting(const ExperimentFile& file, const std::string& nam
   const auto keys = file.keysOf(section);
   for (const auto& entry : keys) file.at(entry, [&] { setSetting(setting, entry); });
   checkSettings(file, heading, keys);
+  if (setting.variation.share > 0) checkVariation(file, heading, keys, setting);
   return setting;
 }
 
@@ -302,6 +331,7 @@ Experiment readExperiment(const ExperimentFile& file, const std::vector<std::str
   const Lists lists = readLists(file, overrides);
   Experiment experiment;
   experiment.title = lists.title;
+  experiment.worst = lists.worst;
   for (const auto& name : listOf("data", lists.data))
     experiment.data.push_back(readData(file, name, data_folder));
   for (const auto& name : listOf("settings", lists.settings))
@@ -352,6 +382,8 @@ const std::vector<ExperimentColumn>& experimentColumns() {
       {"relations_std_m", "relations std, m", 4},
       {"local_relations_m", "local relations, m", 4},
       {"local_relations_deg", "local relations, deg", 3},
+      {"constraints_accepted", "loops accepted", 1},
+      {"constraints_contradicted", "loops contradicted", 1},
       {"scans", "scans", 0},
       {"submaps", "submaps", 1},
       {"key_nodes", "nodes", 0},

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "parameter_variation.h"
+
 namespace submap_slam {
 
 /** Section [data NAME]: a simulated world, or a recording with something to judge the result by. */
@@ -27,6 +29,7 @@ struct ExperimentSetting {
   std::string name;
   std::string baseline;               ///< empty: the pipeline of `map`; else whose poses are taken instead
   std::vector<std::string> settings;  ///< "section.key=value"
+  ParameterVariation variation;       ///< on top of the settings, another one for each seed
 };
 
 /** A figure of a cell and how tables show it. */
@@ -51,6 +54,7 @@ struct Experiment {
   std::vector<uint64_t> seeds;
   std::vector<ExperimentColumn> columns;
   std::vector<ExperimentPlot> plots;  ///< as in the file; without any, one of each column
+  bool worst = false;  ///< tables show the greatest value over the seeds too
 };
 
 /** All columns there are. */

@@ -84,7 +84,9 @@ std::unique_ptr<Configuration> configurationOf(const Cell& cell) {
   options.settings = cell.data.settings;
   options.settings.insert(options.settings.end(), cell.setting.settings.begin(), cell.setting.settings.end());
   options.seed = cell.seed;
-  return loadConfiguration(options);
+  auto config = loadConfiguration(options);
+  vary(config->table, cell.setting.variation, cell.seed);
+  return config;
 }
 
 /** Everything that a result depends on but the build of the program; recordings by both ends of their files.

@@ -65,24 +65,30 @@ std::string markdown(const Experiment& experiment, const std::vector<ExperimentR
       } else if (s.count == 1) {
         text += fmt::format(" {:.{}f} |", s.mean, column.decimals);
       } else {
-        text += fmt::format(" {:.{}f} ± {:.{}f} |", s.mean, column.decimals, s.std, column.decimals);
+        text += fmt::format(" {:.{}f} ± {:.{}f}", s.mean, column.decimals, s.std, column.decimals);
+        text += experiment.worst ? fmt::format(", ≤ {:.{}f} |", s.max, column.decimals) : " |";
       }
     }
     if (!row.note.empty()) text += fmt::format(" failed: {} |", row.note);
   }
-  return text + fmt::format("\n\nMean ± standard deviation over seeds {}; submap-slam {}, build {}.\n",
+  return text + fmt::format("\n\nMean ± standard deviation{} over seeds {}; submap-slam {}, build {}.\n",
+                            experiment.worst ? " and greatest value" : "",
                             fmt::join(experiment.seeds, ", "), version(), fmt::join(buildsOf(rows), " and "));
 }
 
 std::string csv(const Experiment& experiment, const std::vector<ExperimentRow>& rows) {
   std::string text = "data,setting,runs";
-  for (const auto& column : experiment.columns) text += fmt::format(",{0}_mean,{0}_std", column.key);
+  for (const auto& column : experiment.columns) {
+    text += fmt::format(",{0}_mean,{0}_std", column.key);
+    if (experiment.worst) text += fmt::format(",{}_max", column.key);
+  }
   text += ",failed\n";
   for (const auto& row : rows) {
     text += fmt::format("{},{},{}", row.data, row.setting, row.complete());
     for (const auto& column : experiment.columns) {
       const ErrorStatistics s = row.statistics(column.key);
       text += s.count == 0 ? ",," : fmt::format(",{},{}", s.mean, s.std);
+      if (experiment.worst) text += s.count == 0 ? "," : fmt::format(",{}", s.max);
     }
     text += "," + (row.note.empty() ? "" : quotedCsv(row.note)) + "\n";
   }

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <optional>
 
+#include <submap_slam/core/doubtful_ends.h>
 #include <submap_slam/core/relative_pose.h>
 #include "frame_covariances.h"
 
@@ -25,6 +26,9 @@ constexpr double kChi2Alone = 16, kChi2Together = 25;
 
 /** Standard deviations of what lies beyond a gap in the log: it may be anywhere. */
 constexpr double kGap_m = 100, kGap_rad = 3;
+
+/** With a larger standard deviation a heading is not known at all: the robot was carried. */
+constexpr double kHeadingUnknown_rad = 0.9;
 
 /** Odometry's idea of T_s_end, if the log has odometry at both ends. */
 std::optional<TPose2D> odometryOfEnd(const GridSubmap& submap, const GridSubmap& next) {
@@ -168,7 +172,7 @@ void LoopSearch::State::appendFrame(FrameGraph& graph) const {
 void LoopSearch::State::closeLoops(std::size_t k) {
   const SubmapMatcher matcher(*submaps_[k], params_.matcher);
   known_.push_back({matcher.reference(), PathCircle(*submaps_[k])});
-  if (k < 2) return;
+  if (k == 0) return;
   const FrameCovariances covariances(result_.graph);
   std::vector<Task> tasks = tasksOf(k, covariances);
   tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t t) {
@@ -192,7 +196,8 @@ std::vector<LoopSearch::State::Task> LoopSearch::State::tasksOf(std::size_t k,
                                                                 const FrameCovariances& covariances) const {
   std::vector<Task> tasks;
   const auto& frames = result_.graph.frames;
-  for (std::size_t i = 0; i + 1 < k; ++i) {
+  for (std::size_t i = 0; i < k; ++i) {
+    if (i + 1 == k && !endIsDoubtful(*submaps_[i])) continue;
     const TPose2D T_k_i = frames[i] - frames[k];
     const PathCircle &here = known_[k].path, &there = known_[i].path;
     const mrpt::math::TPoint2D centre = T_k_i.composePoint({there.x, there.y});
@@ -205,6 +210,7 @@ std::vector<LoopSearch::State::Task> LoopSearch::State::tasksOf(std::size_t k,
     const double sigma_phi = std::sqrt(std::max(0.0, covariance(2, 2)));
     PoseWindow window{T_k_i, std::min(params_.max_window, params_.margin_xy + 3 * sigma_xy),
                       std::min(params_.max_window_phi, params_.margin_phi + 3 * sigma_phi)};
+    if (sigma_phi > kHeadingUnknown_rad) window.half_phi = M_PI;
     if (sigma_xy < params_.known || apart > window.half_xy) continue;
     tasks.push_back({i, window, covariance, std::nullopt});
   }

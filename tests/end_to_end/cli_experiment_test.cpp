@@ -1,4 +1,5 @@
 /** `experiment` fills its table whatever happens to single cells, and does nothing twice. */
+#include <cmath>
 #include <csignal>
 #include <sstream>
 #include <thread>
@@ -117,6 +118,26 @@ TEST_F(ExperimentTest, FailedCellsShowTheirErrorAndTheRestCompletes) {
   EXPECT_THAT(contentOf(path("out/table.csv")), HasSubstr("hall,deaf,0,,,,,,,\"seed 1: "));
 }
 
+TEST_F(ExperimentTest, VariesSettingsAnewForEachSeed) {
+  const std::string varied =
+      "[setting varied]\njoining.chain =\nsubmaps.max_distance = 4\nvary = 0.5\n"
+      "varied = submaps.max_distance, particles.max, rescue.below\n";
+  succeed({"experiment", experiment("varied", varied), "-o", path("out"), "--set", "experiment.worst=true"});
+  const auto valueOf = [&](const std::string& key, const char* seed) {
+    const std::string ini = contentOf(result("varied", seed).parent_path() / "config.ini");
+    return std::stod(ini.substr(ini.find("\n" + key + " = ") + key.size() + 4));
+  };
+  EXPECT_NE(valueOf("max_distance", "1"), valueOf("max_distance", "2"));
+  for (const char* seed : {"1", "2"}) {
+    EXPECT_GE(valueOf("max_distance", seed), 2);
+    EXPECT_LE(valueOf("max_distance", seed), 6);
+    EXPECT_EQ(valueOf("max", seed), std::round(valueOf("max", seed)));
+    EXPECT_LE(valueOf("below", seed), 1) << "beyond what is allowed";
+  }
+  EXPECT_THAT(table(), HasSubstr(", ≤ "));
+  EXPECT_THAT(contentOf(path("out/table.csv")), HasSubstr("mae_m_mean,mae_m_std,mae_m_max,"));
+}
+
 TEST_F(ExperimentTest, JudgesRecordingsByTruthAndRelations) {
   std::ostringstream relations;
   const double start = 1577836800;  // of the simulated logs
@@ -150,6 +171,9 @@ TEST_F(ExperimentTest, RefusesBadDescriptions) {
           "did you mean [submaps] max_distance?");
   refuses(head + kData + "[setting chain]\njoining.chain = magic\n", "magic");
   refuses(head + kData + "[setting chain]\nbaseline = magic\n", "expected odometry or truth");
+  refuses(head + kData + kChain + "varied = submaps.max_distence\n", "no such parameter to vary");
+  refuses(head + kData + kChain + "varied = mapper.method\n", "only numbers can be varied");
+  refuses(head + kData + kChain + "vary = 2\n", "must lie in [0, 1]");
   refuses(head + kChain + "[data hall]\nworld = moon\n", "expected one of room");
   refuses(head + kChain + "[data hall]\nwerld = room\n", "unknown key [data hall] werld");
   refuses(head + kChain + "[data hall]\nworld = room\nsimulation.beam = 3\n",

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <submap_slam/mapping/rbpf_grid_mapper.h>
+#include <submap_slam/mapping/stray_scans.h>
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Cholesky>
@@ -239,6 +240,64 @@ TEST(GridMapper, AMatchThatStaysLostClosesTheSubmap) {
   expectConsistent(submaps, frames.size());
   ASSERT_GT(submaps.size(), 1u);
   EXPECT_EQ(submaps[0]->statistics.closed_because, "match lost");
+}
+
+/** The first submap that ends at that frame; null if none does. */
+GridSubmap::Ptr endingAt(const GridSubmaps& submaps, std::size_t frame) {
+  const auto found = std::find_if(submaps.begin(), submaps.end(),
+                                  [frame](const auto& submap) { return submap->end_frame == frame; });
+  return found == submaps.end() ? nullptr : *found;
+}
+
+TEST(GridMapper, AStepThatOdometryContradictsEndsTheSubmap) {
+  OdometryModel odometry;
+  odometry.jumps = {{15, {0, 0, 0.9}}};  // frame 75, at 5 scans a second
+  const SimulatedLog log = simulateRoute(roomWorld(), 25, odometry, 1);
+  const auto submaps = mapLog(log.frames, {}, 1, shortStretches());
+  expectConsistent(submaps, log.frames.size());
+  const auto before = endingAt(submaps, 75);
+  ASSERT_TRUE(before);
+  EXPECT_EQ(before->statistics.closed_because, "match in doubt");
+  EXPECT_NEAR(std::sqrt(before->end_pose.cov(2, 2)), 0.45, 0.05) << "odometry may be right";
+  for (const auto& submap : submaps) EXPECT_LT(endError(log.truth, *submap).distance(), 0.05);
+}
+
+TEST(GridMapper, NothingIsInDoubtInAnOrdinaryLog) {
+  for (const auto& submap : roomSubmaps())
+    EXPECT_EQ(submap->statistics.closed_because, submap->has_successor ? "stretch ended" : "log ended");
+}
+
+TEST(GridMapper, StrayScansAreLeftOut) {
+  auto frames = roomLog().frames;
+  scrambleScans(frames, 40, 40 + kStrayScans);
+  const auto submaps = mapLog(frames, {}, 1, shortStretches());
+  ASSERT_EQ(submaps.size(), roomSubmaps().size());
+  for (const auto& submap : submaps) {
+    EXPECT_LT(endError(roomLog().truth, *submap).distance(), 0.05);
+    for (std::size_t n = 0; n < submap->nodes.size(); ++n) {
+      const std::size_t frame = submap->first_frame + n;
+      const bool stray = frame >= 40 && frame < 40 + kStrayScans && n > 0;
+      EXPECT_FALSE(stray && submap->nodes[n].isKey()) << frame;
+    }
+  }
+}
+
+TEST(GridMapper, ARobotThatWasCarriedBeginsASubmap) {
+  for (const std::size_t at : {50u, 51u, 52u, 53u, 54u, 55u, 56u}) {  // also next to the end of a stretch
+    auto frames = std::vector<Frame>(roomLog().frames.begin(), roomLog().frames.begin() + at);
+    const SimulatedLog elsewhere = simulateRoute(loopWorld(), 10, {}, 2);
+    for (Frame frame : elsewhere.frames) {
+      frame.odometry = *roomLog().frames[at - 1].odometry + *frame.odometry;
+      frame.index = frames.size();
+      frames.push_back(frame);
+    }
+    const auto submaps = mapLog(frames, {}, 1, shortStretches());
+    expectConsistent(submaps, frames.size());
+    const auto before = endingAt(submaps, at);
+    ASSERT_TRUE(before) << at;
+    EXPECT_GT(before->end_pose.cov(0, 0), 20);
+    EXPECT_GT(before->end_pose.cov(2, 2), 0.9);
+  }
 }
 
 // ---- parameters ----

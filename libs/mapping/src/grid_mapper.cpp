@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "doubtful_steps.h"
+
 namespace submap_slam {
 namespace {
 
@@ -24,6 +26,7 @@ std::optional<TPose2D> incrementBetween(const Frame& a, const Frame& b) {
 struct Span {
   std::size_t warm_up = 0, first = 0, end = 0;
   bool has_successor = false;
+  bool ends_in_doubt = false;  ///< by a doubtful step: what lies before tells nothing of the map behind
 };
 
 /** First of the frames that prepare the matching map of a submap starting at `first`, be it in the middle of
@@ -62,24 +65,29 @@ struct Tracked {
   LocalPath path;  ///< in the frame of the tracker
   SubmapStatistics statistics;
   bool lost = false;  ///< the last scans could not be matched
+  Eigen::Vector3d last_step_off =
+      Eigen::Vector3d::Zero();  ///< what a doubtful last step may be off by (m, m, rad)
 };
 
 /** Builds one submap; lives as long as that takes. */
 class SubmapBuild {
  public:
   SubmapBuild(const GridMapperParams& params, const std::vector<Frame>& frames,
-              const std::vector<LaserPoints>& scans, SubmapTracker& tracker)
-      : params_(params), frames_(frames), scans_(scans), tracker_(tracker) {}
+              const std::vector<LaserPoints>& scans, const DoubtfulSteps& doubtful_steps,
+              SubmapTracker& tracker)
+      : params_(params), frames_(frames), scans_(scans), doubtful_steps_(doubtful_steps), tracker_(tracker) {}
 
-  /** Tracks, refines and renders; shortens `span` if a decision rule closes the submap early. */
+  /** Tracks, refines and renders; shortens `span` if a decision rule closes the submap early. Empty if the
+   * warm-up holds a doubtful step: it begins after that now, and wants a new tracker. */
   GridSubmap::Ptr run(Span& span) {
-    Tracked tracked = track(span);
-    if (params_.refine) refine(span, tracked.path);
-    return assemble(span, tracked);
+    std::optional<Tracked> tracked = track(span);
+    if (!tracked) return {};
+    if (params_.refine) refine(span, tracked->path);
+    return assemble(span, *tracked);
   }
 
  private:
-  Tracked track(Span& span);
+  std::optional<Tracked> track(Span& span);
   void refine(const Span& span, LocalPath& path) const;
   GridSubmap::Ptr assemble(const Span& span, const Tracked& tracked) const;
   void addScores(SubmapStatistics& statistics, const Span& span, const LocalPath& path) const;
@@ -90,24 +98,42 @@ class SubmapBuild {
   const GridMapperParams& params_;
   const std::vector<Frame>& frames_;
   const std::vector<LaserPoints>& scans_;
+  const DoubtfulSteps& doubtful_steps_;
   SubmapTracker& tracker_;
 };
 
-Tracked SubmapBuild::track(Span& span) {
+std::optional<Tracked> SubmapBuild::track(Span& span) {
   ClosingRules rules(params_.closing);
   DriftCovariance drift(params_.drift);
   std::string closed_because = span.has_successor ? "stretch ended" : "log ended";
+  const auto close = [&](std::size_t end, const std::string& reason) {
+    span.end = end;
+    span.has_successor = true;
+    closed_because = reason;
+  };
+  Eigen::Vector3d last_step_off = Eigen::Vector3d::Zero();
+  std::size_t decided = span.warm_up;  // up to this frame it is known which hypothesis is right
   for (std::size_t i = span.warm_up; i <= lastFrame(span); ++i) {
     tracker_.step(scans_[i], i > span.warm_up ? incrementBetween(frames_[i - 1], frames_[i]) : std::nullopt);
-    if (i <= span.first || i == lastFrame(span)) continue;
-    advance(drift, tracker_.path(), tracker_.path().size() - 1);
-    const std::string reason = rules.check(tracker_, drift);
-    if (reason.empty()) continue;
-    closed_because = reason;
-    span.end = i;
-    span.has_successor = true;
+    if (i > span.first && i < lastFrame(span)) {
+      advance(drift, tracker_.path(), tracker_.path().size() - 1);
+      const std::string reason = rules.check(tracker_, drift);
+      if (!reason.empty()) close(i, reason);
+    }
+    if (tracker_.undecided() && i < lastFrame(span)) continue;
+    const bool last = span.has_successor && i == span.end;
+    if (const auto doubtful = doubtful_steps_.find(tracker_.path(), span.warm_up, decided, i, last)) {
+      if (doubtful->to <= span.first) {
+        span.warm_up = doubtful->to;
+        return std::nullopt;
+      }
+      if (doubtful->to < lastFrame(span)) close(doubtful->to, "match in doubt");
+      last_step_off = doubtful->off;
+      span.ends_in_doubt = true;
+    }
+    decided = i;
   }
-  Tracked tracked{tracker_.path(), tracker_.statistics(), rules.lost()};
+  Tracked tracked{tracker_.path(), tracker_.statistics(), rules.lost(), last_step_off};
   tracked.statistics.closed_because = closed_because;
   return tracked;
 }
@@ -143,6 +169,8 @@ mrpt::math::CMatrixDouble33 SubmapBuild::endCovariance(const Span& span, const T
     const double xy = params_.closing.max_sigma_xy, phi = params_.closing.max_sigma_phi;
     out.asEigen().diagonal() += Eigen::Vector3d(xy * xy, xy * xy, phi * phi);
   }
+  const double off_xy2 = tracked.last_step_off.head<2>().squaredNorm(), off_phi = tracked.last_step_off.z();
+  out.asEigen().diagonal() += Eigen::Vector3d(off_xy2, off_xy2, off_phi * off_phi);
   return out;
 }
 
@@ -191,13 +219,20 @@ std::vector<GridSubmap::Ptr> GridMapper::map(const Stretch& stretch) const {
   std::vector<LaserPoints> scans;
   for (const auto& frame : stretch.frames) scans.push_back(toLaserPoints(frame, max_range));
 
+  const DoubtfulSteps doubtful_steps(params_.closing, stretch.frames);
   std::vector<GridSubmap::Ptr> submaps;
   const std::size_t end = stretch.warm_up + stretch.ownFrames();
+  bool after_doubt = false;
   for (std::size_t first = stretch.warm_up; first < end;) {
-    Span span{warmUpBegin(stretch, first), first, end, !stretch.last};
-    const auto tracker = track(stretch.frames[first].index);
-    submaps.push_back(SubmapBuild(params_, stretch.frames, scans, *tracker).run(span));
+    Span span{after_doubt ? first : warmUpBegin(stretch, first), first, end, !stretch.last};
+    GridSubmap::Ptr submap;
+    while (!submap) {
+      const auto tracker = track(stretch.frames[first].index);
+      submap = SubmapBuild(params_, stretch.frames, scans, doubtful_steps, *tracker).run(span);
+    }
+    submaps.push_back(submap);
     first = span.end;
+    after_doubt = span.ends_in_doubt;
   }
   return submaps;
 }

@@ -99,6 +99,11 @@ void describe(ParameterTable& table, ClosingParams& p) {
             "A pose less certain than this closes the submap");
   table.add("max_sigma_phi", p.max_sigma_phi, "rad", kPositive,
             "A heading less certain than this closes the submap");
+  table.add("doubtful_step_xy", p.doubtful_step_xy, "m", kPositive,
+            "Where odometry or the scans leap and they disagree by more than this, the submap ends, so that "
+            "joining can decide "
+            "who is right");
+  table.add("doubtful_step_phi", p.doubtful_step_phi, "rad", kPositive, "The same for the turn");
 }
 
 void describe(ParameterTable& table, DriftParams& p) {

@@ -25,6 +25,14 @@ TPose2D lastIncrement(const LocalPath& path) {
   return path[n - 1].pose - path[n - 2].pose;
 }
 
+double usualInlierShare(const LocalPath& path, std::size_t end) {
+  constexpr std::size_t kScans = 10;
+  const std::size_t n = std::min(kScans, end);
+  double sum = 0;
+  for (std::size_t k = end - n; k < end; ++k) sum += static_cast<double>(path[k].inlier_share);
+  return sum / static_cast<double>(n);
+}
+
 bool isKeyPose(const LocalPath& path, const TPose2D& pose, const KeyParams& keys) {
   const auto last_key = std::find_if(path.rbegin(), path.rend(), [](const auto& node) { return node.key; });
   if (last_key == path.rend()) return true;

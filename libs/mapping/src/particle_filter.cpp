@@ -3,6 +3,7 @@
 #include <mrpt/math/wrap2pi.h>
 #include <mrpt/poses/CPose2D.h>
 #include <submap_slam/core/random_stream.h>
+#include <submap_slam/mapping/stray_scans.h>
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
@@ -35,17 +36,6 @@ double mahalanobis(const TPose2D& pose, const PosePrior& prior) {
 bool covers(const CorrelativeSearchParams& search, const TPose2D& a, const TPose2D& b) {
   return std::hypot(a.x - b.x, a.y - b.y) < 0.5 * search.window_xy &&
          std::abs(mrpt::math::wrapToPi(a.phi - b.phi)) < 0.5 * search.window_phi;
-}
-
-/** Mean share of inlier beams over the last scans: how well scans can be expected to fit here. In the open,
- * where most beams end where nothing was seen before, it is low without anything being wrong. */
-double usualInlierShare(const Particle& particle) {
-  constexpr std::size_t kScans = 10;
-  const std::size_t n = std::min(kScans, particle.path.size());
-  double sum = 0;
-  for (std::size_t k = particle.path.size() - n; k < particle.path.size(); ++k)
-    sum += static_cast<double>(particle.path[k].inlier_share);
-  return sum / static_cast<double>(n);
 }
 
 }  // namespace
@@ -91,8 +81,9 @@ std::vector<ParticleFilter::Proposal> ParticleFilter::propose(const Particle& pa
   if (particle.map.empty() || scan.points.empty())
     return {unseen(prior.mean, particle.path.back().inlier_share)};
   const MatchResult match = matcher_.match(particle.map, scan, prior);
-  const bool fits = match.inlier_share >= params_.rescue_below * usualInlierShare(particle) &&
-                    mahalanobis(match.pose, prior) <= params_.slip_beyond;
+  const bool fits =
+      match.inlier_share >= params_.rescue_below * usualInlierShare(particle.path, particle.path.size()) &&
+      mahalanobis(match.pose, prior) <= params_.slip_beyond;
   std::vector<Proposal> out;
   if (fits && !isSurprising(particle, prior))
     out.push_back(proposal(match, prior, 0, true));
@@ -159,7 +150,7 @@ void ParticleFilter::addSlips(std::vector<Proposal>& modes, const Particle& part
   const bool steady = odometry_since_ + 1 < odometry_.size() && !isSurprising(particle, prior);
   const double first = steady ? params_.slip_cost : params_.surprise_cost;
   const double cost = particle.path.back().by_odometry ? first : 0.0;
-  const double fitting = params_.rescue_below * usualInlierShare(particle);
+  const double fitting = params_.rescue_below * usualInlierShare(particle.path, particle.path.size());
   // Odometry is given up only for a pose that explains the scan, not for one that is merely less bad.
   const auto add = [&](const PosePrior& wide, const TPose2D& start) {
     const MatchResult match = matcher_.match(particle.map, scan, wide, start);
@@ -203,9 +194,13 @@ void ParticleFilter::extend(Particle& particle, const LaserPoints& scan, const P
   PathNode node;
   node.take(proposal.match);
   node.by_odometry = proposal.by_odometry;
-  node.key = !scan.points.empty() && isKeyPose(particle.path, node.pose, params_.keys);
-  if (node.key) particle.map.insert(scan, node.pose);
+  const bool far = !scan.points.empty() && isKeyPose(particle.path, node.pose, params_.keys);
   particle.path.push_back(node);
+  const std::size_t strays = scansThatFitNothing(particle.path, particle.path.size() - 1);
+  if (far && (strays == 0 || strays > kStrayScans)) {
+    particle.path.back().key = true;
+    particle.map.insert(scan, node.pose);
+  }
   particle.log_weight += proposal.log_weight;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <malloc.h>
+#include <submap_slam/core/doubtful_ends.h>
 #include <submap_slam/core/errors.h>
 #include <submap_slam/pipeline/stage_timer.h>
 
@@ -97,6 +98,8 @@ JoinOutcome Joining::goOn(const GridSubmaps& submaps, Reporter& reporter,
   constraints.insert(constraints.end(), by_hand.begin(), by_hand.end());
   for (std::size_t k = 0; k < joiners_.size(); ++k)
     run(*joiners_[k], *at_work_[k], submaps, result, reporter);
+  if (const auto breaks = describeBreaks(submaps, result.map.constraints); !breaks.empty())
+    reporter.warning(breaks);
   fuse(submaps, map_resolution_, result);
   return result;
 }

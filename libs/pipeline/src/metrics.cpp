@@ -1,9 +1,12 @@
 #include <submap_slam/pipeline/metrics.h>
 
 #include <fmt/format.h>
+#include <submap_slam/core/relative_pose.h>
 #include <submap_slam/core/version.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 
 namespace submap_slam {
 
@@ -22,6 +25,20 @@ LoopCount countLoops(const std::vector<Constraint>& constraints) {
   return count;
 }
 
+std::size_t contradictedLoops(const GridSubmaps& submaps, const JoinedMap& joined) {
+  constexpr double kFar_m = 0.5, kFar_rad = 5 * M_PI / 180;
+  std::map<uint32_t, mrpt::math::TPose2D> frames;
+  for (std::size_t k = 0; k < submaps.size(); ++k)
+    frames.emplace(submaps[k]->id, joined.frames[k].mean.asTPose());
+  const auto isContradicted = [&](const Constraint& c) {
+    if (!c.inter || !c.accepted || frames.count(c.from) == 0 || frames.count(c.to) == 0) return false;
+    const auto e = relationError(frames[c.from], frames[c.to], c.T_a_b.mean.asTPose()).e;
+    return e.head<2>().norm() > kFar_m || std::abs(e.z()) > kFar_rad;
+  };
+  return static_cast<std::size_t>(
+      std::count_if(joined.constraints.begin(), joined.constraints.end(), isContradicted));
+}
+
 void addJoinMetrics(Metrics& metrics, const GridSubmaps& submaps, const JoinedMap& joined) {
   std::size_t key_nodes = 0, frames = 0;
   for (const auto& submap : submaps) key_nodes += submap->keyNodes(), frames += submap->nodes.size();
@@ -35,6 +52,7 @@ void addJoinMetrics(Metrics& metrics, const GridSubmaps& submaps, const JoinedMa
   metrics["join_iterations"] = joined.iterations.size();
   metrics["constraints_accepted"] = loops.accepted;
   metrics["constraints_rejected"] = loops.rejected;
+  metrics["constraints_contradicted"] = contradictedLoops(submaps, joined);
 }
 
 void addProgressMetrics(Metrics& metrics, const std::vector<SubmapProgress>& progress) {

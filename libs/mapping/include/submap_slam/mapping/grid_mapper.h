@@ -20,8 +20,10 @@ struct ClosingParams {
   double lost_below = 0.25;  ///< share of inlier beams
   int lost_scans = 20;
   int undecided_scans = 300;
-  double max_sigma_xy = 0.5;   ///< m
-  double max_sigma_phi = 0.2;  ///< rad
+  double max_sigma_xy = 0.5;       ///< m
+  double max_sigma_phi = 0.2;      ///< rad
+  double doubtful_step_xy = 0.3;   ///< m
+  double doubtful_step_phi = 0.1;  ///< rad
 };
 
 struct GridMapperParams {

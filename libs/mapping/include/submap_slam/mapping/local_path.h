@@ -4,6 +4,7 @@
 #include <submap_slam/mapping/match_result.h>
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <vector>
 
 namespace submap_slam {
@@ -40,6 +41,11 @@ Eigen::Matrix3d motionInformation(const MotionParams& params, const mrpt::math::
 
 /** The last motion again; nothing if there is none yet. */
 mrpt::math::TPose2D lastIncrement(const LocalPath& path);
+
+/** Mean share of inlier beams over the last scans before node `end` of a path, at least one: how well scans
+ * can be expected to fit there. In the open, where most beams end where nothing was seen before, it is low
+ * without anything being wrong. */
+double usualInlierShare(const LocalPath& path, std::size_t end);
 
 /** After how much motion a scan is inserted into the map. */
 struct KeyParams {

@@ -24,8 +24,12 @@ struct LoopCount {
 };
 LoopCount countLoops(const std::vector<Constraint>& constraints);
 
+/** Accepted loop closures whose frames ended up more than 0.5 m or 5° from where the closure has them: either
+ * it is false or the map is. */
+std::size_t contradictedLoops(const GridSubmaps& submaps, const JoinedMap& joined);
+
 /** frames, key_nodes, submaps, objective, join_status, join_reason, join_iterations, and of the loop closures
- * that were tried constraints_accepted and constraints_rejected */
+ * that were tried constraints_accepted, constraints_rejected and constraints_contradicted */
 void addJoinMetrics(Metrics& metrics, const GridSubmaps& submaps, const JoinedMap& joined);
 
 /** match_score_mean, match_score_min, match_score_max, nodes_per_submap, and stage_1 … stage_5: share of the
