@@ -111,7 +111,7 @@ RunSummary mapRawlog(const std::string& log, const std::string& folder, bool ove
   const StageTimer timer;
   RunSummary summary;
   Joining joining(config.joinerChain(), config.joining.map_resolution);  // a wrong name is refused at once
-  StretchSource source(log, config.reader, config.stretches);
+  StretchSource source(log, config.reader, StretchSplitter(config.stretches, config.mapper));
   const OutputDirectory out = openFolder(folder, overwrite);
 
   SubmapLogWriter writer = openSubmapFile(out.file(kSubmapFile), log, config, overwrite, reporter);
@@ -144,7 +144,7 @@ RunSummary buildRawlog(const std::string& log, const std::string& submap_file, b
                        const Configuration& config, Reporter& reporter) {
   const StageTimer timer;
   RunSummary summary;
-  StretchSource source(log, config.reader, config.stretches);
+  StretchSource source(log, config.reader, StretchSplitter(config.stretches, config.mapper));
   if (!overwrite) refuseFinished(submap_file);
   SubmapLogWriter writer = openSubmapFile(submap_file, log, config, overwrite, reporter);
   const auto mapper = makeGridMapper(config.mapper, config.seed);

@@ -6,9 +6,8 @@
 
 namespace submap_slam {
 
-StretchSource::StretchSource(const std::string& log, const ReaderParams& reader,
-                             const StretchParams& stretches)
-    : reader_(log, reader), splitter_(stretches) {
+StretchSource::StretchSource(const std::string& log, const ReaderParams& reader, StretchSplitter splitter)
+    : reader_(log, reader), splitter_(std::move(splitter)) {
   first_ = nextFrame();
 }
 

@@ -13,7 +13,7 @@ namespace submap_slam {
 class StretchSource {
  public:
   /** Throws InputError if the log cannot be opened or holds no scan before its end or first damage. */
-  StretchSource(const std::string& log, const ReaderParams& reader, const StretchParams& stretches);
+  StretchSource(const std::string& log, const ReaderParams& reader, StretchSplitter splitter);
 
   /** The next stretch; nothing at the end of the log or of its undamaged part. */
   std::optional<Stretch> next();
