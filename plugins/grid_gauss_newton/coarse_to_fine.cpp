@@ -1,6 +1,7 @@
 #include "coarse_to_fine.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "full_gauss_newton.h"
@@ -73,6 +74,8 @@ class Schedule {
                             const Evaluation& at_start);
   LevelResult optimiseCoarse(std::size_t k, const Frames& start);
   bool descend(const LevelProblem& finest, Candidate& best);
+  bool descendOnce(const LevelProblem& finest, Candidate& best);
+  bool movedFar(const Frames& before, const Frames& after) const;
   CoarseToFineResult conclude(const LevelResult& finest, double evidence_variance);
 
   const std::vector<EvidenceLevels>& pyramid_;
@@ -127,8 +130,24 @@ LevelResult Schedule::optimiseCoarse(std::size_t k, const Frames& start) {
   return optimiseLevel(k, problem, level.frames, evaluate(problem, level.frames));
 }
 
-/** Goes down to the level above the finest; false if it was stopped on request. */
+/** Whether a frame moved by more than half a cell of the coarsest level. */
+bool Schedule::movedFar(const Frames& before, const Frames& after) const {
+  const double far = 0.5 * cellSize(pyramid_.back());
+  for (std::size_t i = 0; i < before.size(); ++i)
+    if (std::hypot(after[i].x - before[i].x, after[i].y - before[i].y) > far) return true;
+  return false;
+}
+
+/** From the coarsest level to the one above the finest, and once more if that moved frames far: submaps that
+ * start far off mislead each other through the joint values of cells, and then fewer of them are off. False
+ * if it was stopped on request. */
 bool Schedule::descend(const LevelProblem& finest, Candidate& best) {
+  const Frames start = best.frames;
+  if (!descendOnce(finest, best)) return false;
+  return !movedFar(start, best.frames) || descendOnce(finest, best);
+}
+
+bool Schedule::descendOnce(const LevelProblem& finest, Candidate& best) {
   const double overlap = best.finest.overlap;
   double lowest = best.finest.objective;
   for (std::size_t k = pyramid_.size() - 1; k > 0; --k) {

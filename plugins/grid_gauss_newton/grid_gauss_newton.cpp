@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace submap_slam {
 
@@ -43,6 +44,23 @@ std::vector<uint32_t> idsOf(const GridSubmaps& submaps) {
   std::vector<uint32_t> ids;
   for (const auto& submap : submaps) ids.push_back(submap->id);
   return ids;
+}
+
+/** The constraints as a prior. Frames that a joiner optimised are at the optimum of its own objective, which
+ * may hold more than the constraints (odometry) and weigh them otherwise (robust loss). To second order that
+ * is: the frames are held where they are, as firmly as the constraints say. */
+std::vector<Constraint> priorOf(const GridSubmaps& submaps, const JoinedMap& initial) {
+  std::vector<Constraint> constraints = initial.constraints;
+  if (initial.status != JoinStatus::kConverged && initial.status != JoinStatus::kIterationLimit)
+    return constraints;
+  std::map<uint32_t, mrpt::poses::CPose2D> frame_of;
+  for (std::size_t k = 0; k < submaps.size(); ++k) frame_of[submaps[k]->id] = initial.frames[k].mean;
+  for (Constraint& c : constraints) {
+    const auto from = frame_of.find(c.from), to = frame_of.find(c.to);
+    if (c.accepted && !c.by_hand && from != frame_of.end() && to != frame_of.end())
+      c.T_a_b.mean = to->second - from->second;
+  }
+  return constraints;
 }
 
 /** Share of the work done after an iteration: levels count alike, and so do iterations up to the cap. */
@@ -148,7 +166,7 @@ JoinedMap GridGaussNewton::join(const GridSubmaps& submaps, const JoinedMap& ini
   const auto pyramid = buildPyramid(submaps, {finestLevel(submaps, halvings), levels_, background});
   const CoarseToFineResult result =
       joinCoarseToFine(pyramid, meansOf(initial.frames),
-                       ConstraintPrior(initial.constraints, submaps, prior_weight_), options(), report);
+                       ConstraintPrior(priorOf(submaps, initial), submaps, prior_weight_), options(), report);
   joined.status = result.status;
   joined.reason = result.reason;
   joined.objective = result.objective;

@@ -202,6 +202,29 @@ TEST_F(GridGaussNewtonPlugin, ComesBackToTheChainInACorridor) {
   }
 }
 
+/** Another joiner may know more than the constraints say; where the evidence is silent its frames stay. */
+TEST_F(GridGaussNewtonPlugin, ConstraintsHoldFramesWhereTheJoinerBeforeHasPutThem) {
+  const CorridorProblem p(0);
+  JoinedMap initial;
+  PoseList start = p.truth;
+  for (std::size_t i = 1; i < start.size(); ++i) start[i].x += 0.3;
+  initial.frames = asGaussians(start);
+  initial.constraints = chainSubmaps(p.submaps).constraints;
+  initial.status = JoinStatus::kConverged;
+  const JoinedMap held = joiner->join(p.submaps, initial, {});
+  EXPECT_NEAR(frameOf(held, 1).x, start[1].x, 0.05) << held.reason;
+  EXPECT_EQ(held.constraints[0].T_a_b.mean, initial.constraints[0].T_a_b.mean) << "as they were given";
+
+  initial.status = JoinStatus::kChained;
+  const JoinedMap pulled = joiner->join(p.submaps, initial, {});
+  EXPECT_NEAR(frameOf(pulled, 1).x, p.truth[1].x, 0.05) << pulled.reason;
+
+  initial.status = JoinStatus::kConverged;
+  for (auto& constraint : initial.constraints) constraint.by_hand = true;
+  const JoinedMap by_hand = joiner->join(p.submaps, initial, {});
+  EXPECT_NEAR(frameOf(by_hand, 1).x, p.truth[1].x, 0.05) << by_hand.reason;
+}
+
 TEST_F(GridGaussNewtonPlugin, CovarianceAlongACorridorIsNearlyThatOfTheChain) {
   const CorridorProblem p(0);
   const JoinedMap joined = join(p.submaps, p.truth);

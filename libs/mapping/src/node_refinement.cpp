@@ -187,6 +187,7 @@ RefinedSubmaps refineNodes(const GridSubmaps& submaps, const JoinedMap& joined,
   RefinedSubmaps out;
   addMoves(out, keys);
   out.joined = joined;
+  out.joined.status = JoinStatus::kChained;  // the frames are no optimum of anything any more
   out.joined.map = EvidenceGrid();
   out.joined.nodes.clear();
   std::vector<TPose2D> T_w_s, T_s_moved;

@@ -165,7 +165,8 @@ RunSummary mapRawlog(const std::string& log, const std::string& folder, bool ove
   refuseEdits(edits, forms);
   Joining joining(config.joinerChain(), config.joining.map_resolution);  // a wrong name is refused at once
   const auto landmark_joiner = forms.landmarks ? config.landmarkJoiner() : nullptr;
-  StretchSource source(log, readerParams(config, forms), stretchParams(config, forms),
+  StretchSource source(log, readerParams(config, forms),
+                       StretchSplitter(stretchParams(config, forms), config.mapper),
                        detectorParams(config, forms));
   const OutputDirectory out = openFolder(folder, overwrite);
   const Run run{log, out, config, reporter, timer};
@@ -210,7 +211,8 @@ RunSummary buildRawlog(const std::string& log, const std::string& submap_file, b
   const StageTimer timer;
   RunSummary summary;
   const MapForms forms = mapForms(log, config);
-  StretchSource source(log, readerParams(config, forms), stretchParams(config, forms),
+  StretchSource source(log, readerParams(config, forms),
+                       StretchSplitter(stretchParams(config, forms), config.mapper),
                        detectorParams(config, forms));
   if (!overwrite) refuseFinished(submap_file);
   SubmapFiles files = openSubmapFiles(submap_file, forms, log, config, overwrite, reporter);

@@ -6,9 +6,9 @@
 
 namespace submap_slam {
 
-StretchSource::StretchSource(const std::string& log, const ReaderParams& reader,
-                             const StretchParams& stretches, const PoleDetectorParams& detector)
-    : reader_(log, reader), splitter_(stretches), detector_(detector) {
+StretchSource::StretchSource(const std::string& log, const ReaderParams& reader, StretchSplitter splitter,
+                             const PoleDetectorParams& detector)
+    : reader_(log, reader), splitter_(std::move(splitter)), detector_(detector) {
   first_ = nextFrame();
 }
 

@@ -15,7 +15,7 @@ class StretchSource {
  public:
   /** Throws InputError if the log cannot be opened or holds no scan before its end or first damage.
    * @param detector if it is enabled, poles in the scans become landmarks */
-  StretchSource(const std::string& log, const ReaderParams& reader, const StretchParams& stretches,
+  StretchSource(const std::string& log, const ReaderParams& reader, StretchSplitter splitter,
                 const PoleDetectorParams& detector);
 
   /** The next stretch; nothing at the end of the log or of its undamaged part. */
