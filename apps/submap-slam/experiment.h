@@ -54,7 +54,7 @@ struct Experiment {
   std::vector<uint64_t> seeds;
   std::vector<ExperimentColumn> columns;
   std::vector<ExperimentPlot> plots;  ///< as in the file; without any, one of each column
-  bool worst = false;  ///< tables show the greatest value over the seeds too
+  bool worst = false;                 ///< tables show the greatest value over the seeds too
 };
 
 /** All columns there are. */

@@ -22,11 +22,11 @@
 #include <set>
 #include <sstream>
 
+#include <submap_slam/pipeline/map_forms.h>
 #include "cell_scores.h"
 #include "child_processes.h"
 #include "common_options.h"
 #include "landmark_scores.h"
-#include <submap_slam/pipeline/map_forms.h>
 #include "program_hash.h"
 #include "simulation_files.h"
 #include "stop_signal.h"

@@ -72,8 +72,8 @@ std::string markdown(const Experiment& experiment, const std::vector<ExperimentR
     if (!row.note.empty()) text += fmt::format(" failed: {} |", row.note);
   }
   return text + fmt::format("\n\nMean ± standard deviation{} over seeds {}; submap-slam {}, build {}.\n",
-                            experiment.worst ? " and greatest value" : "",
-                            fmt::join(experiment.seeds, ", "), version(), fmt::join(buildsOf(rows), " and "));
+                            experiment.worst ? " and greatest value" : "", fmt::join(experiment.seeds, ", "),
+                            version(), fmt::join(buildsOf(rows), " and "));
 }
 
 std::string csv(const Experiment& experiment, const std::vector<ExperimentRow>& rows) {

@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <memory>
 
+#include <submap_slam/pipeline/submap_budget.h>
 #include "commands.h"
 #include "overlap.h"
-#include <submap_slam/pipeline/submap_budget.h>
 #include "terminal_reporter.h"
 
 namespace submap_slam {

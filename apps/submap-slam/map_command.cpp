@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "commands.h"
 #include <submap_slam/pipeline/landmark_pipeline.h>
+#include "commands.h"
 #include "summary.h"
 #include "terminal_reporter.h"
 #include "viewer_process.h"

@@ -62,11 +62,11 @@ std::string mapSummary(const RunSummary& summary, const std::string& folder) {
 
 std::string landmarkSummary(const RunSummary& summary, const std::string& folder) {
   const Metrics& m = summary.metrics;
-  return fmt::format("{} submaps with {} features, {} landmarks\njoined: {} ({}), objective {:.6g}\n{}\nmap: {}{}",
-                     m["submaps"].get<int>(), m["features"].get<int>(), m["landmarks"].get<int>(),
-                     m["join_status"].get<std::string>(), m["join_reason"].get<std::string>(),
-                     m["objective"].get<double>(), resources(m), inFolder(folder, "map.png"),
-                     reportLine(m, folder));
+  return fmt::format(
+      "{} submaps with {} features, {} landmarks\njoined: {} ({}), objective {:.6g}\n{}\nmap: {}{}",
+      m["submaps"].get<int>(), m["features"].get<int>(), m["landmarks"].get<int>(),
+      m["join_status"].get<std::string>(), m["join_reason"].get<std::string>(), m["objective"].get<double>(),
+      resources(m), inFolder(folder, "map.png"), reportLine(m, folder));
 }
 
 std::string buildSummary(const RunSummary& summary, const std::string& submap_file) {

@@ -12,8 +12,8 @@ struct Prediction {
   Eigen::MatrixXd covariance;  ///< J C Jᵀ with C recovered for the start pose and these landmarks alone
 };
 
-/** Predicts the landmarks that are within `margin_m` of one of the submap's features, and as far beyond as that
- * feature is uncertain because the start pose is. `form` must be factorized.
+/** Predicts the landmarks that are within `margin_m` of one of the submap's features, and as far beyond as
+ * that feature is uncertain because the start pose is. `form` must be factorized.
  * @param z features in the submap's frame, two rows for each */
 Prediction predictLandmarks(InformationForm& form, const JointState& state, const Eigen::VectorXd& z,
                             double margin_m);

@@ -23,7 +23,6 @@
 #include <memory>
 #include <optional>
 
-
 namespace submap_slam {
 namespace {
 
@@ -148,8 +147,8 @@ void refuseEdits(const Edits& edits, const MapForms& forms) {
 
 }  // namespace
 
-std::vector<SubmapProgress> writeJoined(const OutputDirectory& out, const GridSubmaps& submaps, const JoinedMap& joined,
-                 Metrics& metrics) {
+std::vector<SubmapProgress> writeJoined(const OutputDirectory& out, const GridSubmaps& submaps,
+                                        const JoinedMap& joined, Metrics& metrics) {
   auto progress = mappingProgress(submaps, joined.frames);
   addProgressMetrics(metrics, progress);
   writeText(out.file("submaps.csv"), progressCsv(progress));

@@ -11,8 +11,8 @@ namespace submap_slam {
  * (m²), observations. Numbers read back to the same bits. */
 void writeLandmarks(const std::string& file, const std::vector<JoinedLandmark>& landmarks);
 
-/** Writes `stamp,x,y,phi,sxx,sxy,sxp,syy,syp,spp` for the pose where each submap ends, in the global map frame
- * (s, m, rad), with its covariance; without end stamps positions in the sequence stand for seconds. */
+/** Writes `stamp,x,y,phi,sxx,sxy,sxp,syy,syp,spp` for the pose where each submap ends, in the global map
+ * frame (s, m, rad), with its covariance; without end stamps positions in the sequence stand for seconds. */
 void writeFrames(const std::string& file, const LandmarkSubmaps& submaps, const JoinedLandmarks& joined);
 
 /** Writes `submap,feature,kind,landmark,distance2` for each feature of each submap, see FeatureAssociation;

@@ -11,7 +11,6 @@
 #include <functional>
 #include <string>
 
-
 namespace submap_slam {
 
 /** A run that makes a map. */
@@ -32,8 +31,8 @@ struct FinishedMap {
   ReportMaker report;
 };
 
-/** The last stage of a run: writes the record of the run, completes the metrics, writes report.html unless [output] report is off, and at
- * the very end metrics.json. Throws OutputError. */
+/** The last stage of a run: writes the record of the run, completes the metrics, writes report.html unless
+ * [output] report is off, and at the very end metrics.json. Throws OutputError. */
 void finishRun(const Run& run, Metrics& metrics, const ReportMaker& report);
 
 }  // namespace submap_slam

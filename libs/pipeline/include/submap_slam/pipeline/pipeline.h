@@ -47,10 +47,10 @@ RunSummary buildRawlog(const std::string& log, const std::string& submap_file, b
 RunSummary joinFile(const std::string& submap_file, const std::string& folder, bool overwrite,
                     const Configuration& config, Reporter& reporter, const Edits& edits = {});
 
-/** Writes all results of a joining but the record of the run, and adds the figures that come with writing them.
- * Returns what submaps.csv says.
+/** Writes all results of a joining but the record of the run, and adds the figures that come with writing
+ * them. Returns what submaps.csv says.
  * @param submaps those that the joiners got */
-std::vector<SubmapProgress> writeJoined(const OutputDirectory& out, const GridSubmaps& submaps, const JoinedMap& joined,
-                 Metrics& metrics);
+std::vector<SubmapProgress> writeJoined(const OutputDirectory& out, const GridSubmaps& submaps,
+                                        const JoinedMap& joined, Metrics& metrics);
 
 }  // namespace submap_slam
