@@ -14,6 +14,7 @@
 #include <iterator>
 #include <sstream>
 
+#include "common_options.h"
 #include "simulation_files.h"
 
 namespace submap_slam {

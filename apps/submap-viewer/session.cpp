@@ -6,6 +6,7 @@
 #include <submap_slam/output/output_directory.h>
 #include <submap_slam/output/text_file.h>
 #include <submap_slam/pipeline/pipeline.h>
+#include <submap_slam/pipeline/results.h>
 #include <submap_slam/pipeline/run_files.h>
 
 #include <algorithm>

@@ -126,12 +126,16 @@ Json iterationsJson(const std::vector<JoinIteration>& iterations) {
 }
 
 Json landmarkTrajectory(const LandmarkSubmaps& submaps, const JoinedLandmarks& joined) {
-  const Trajectory ends = endPoses(submaps, joined);
+  const Trajectory path = trajectoryOf(submaps, joined);
+  const bool ends_only = path.size() == submaps.size();
+  std::vector<std::size_t> submap_of;  // of each pose
+  for (std::size_t k = 0; k < submaps.size(); ++k)
+    submap_of.insert(submap_of.end(), ends_only ? 1 : submaps[k]->nodes.size(), k);
+  submap_of.resize(path.size(), submaps.size() - 1);
   TrajectoryColumns columns;
-  for (std::size_t k = 0; k < ends.size(); ++k) {
-    const auto& cov = joined.frames[k + 1].cov;
-    columns.add(ends[k].stamp, ends[k].pose.x, ends[k].pose.y,
-                sigmaEllipse(cov(0, 0), cov(0, 1), cov(1, 1)).major, k);
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const auto& frame = joined.frames[submap_of[i] + (ends_only ? 1 : 0)];
+    columns.add(path[i].stamp, path[i].pose.x, path[i].pose.y, nodeSigma(frame, path[i].pose), submap_of[i]);
   }
   return columns.json();
 }

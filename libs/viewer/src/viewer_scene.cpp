@@ -7,6 +7,7 @@
 #include <mrpt/opengl/CText.h>
 #include <mrpt/poses/CPose3D.h>
 #include <submap_slam/viewer/grid_picture.h>
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <array>
