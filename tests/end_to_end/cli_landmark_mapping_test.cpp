@@ -69,7 +69,7 @@ class CliLandmarkMapping : public CliTest {
       m.range = static_cast<float>(std::hypot(p.x, p.y));
       m.yaw = static_cast<float>(std::atan2(p.y, p.x));
       m.pitch = 0;
-      m.landmarkID = ids ? i : INVALID_LANDMARK_ID;
+      m.landmarkID = ids ? i : mrpt::obs::INVALID_LANDMARK_ID;
       out.sensedData.push_back(m);
     }
     return out;
@@ -154,7 +154,8 @@ void addLandmarks(const std::string& log, const std::string& truth, const std::s
   std::ifstream poses(truth);
   mrpt::io::CFileGZInputStream from(log);
   mrpt::io::CFileGZOutputStream to(out);
-  auto reader = mrpt::serialization::archiveFrom(from), writer = mrpt::serialization::archiveFrom(to);
+  auto reader = mrpt::serialization::archiveFrom(from);
+  auto writer = mrpt::serialization::archiveFrom(to);
   for (double t, x, y, z, qx, qy, qz, qw; poses >> t >> x >> y >> z >> qx >> qy >> qz >> qw;) {
     mrpt::serialization::CSerializable::Ptr object;
     do {
@@ -175,7 +176,7 @@ void addLandmarks(const std::string& log, const std::string& truth, const std::s
         m.range = static_cast<float>(std::hypot(p.x, p.y));
         m.yaw = static_cast<float>(std::atan2(p.y, p.x));
         m.pitch = 0;
-        m.landmarkID = INVALID_LANDMARK_ID;
+        m.landmarkID = mrpt::obs::INVALID_LANDMARK_ID;
         seen.sensedData.push_back(m);
       }
     writer << seen;

@@ -3,6 +3,7 @@
 #include <mrpt/poses/CPose2D.h>
 #include <submap_slam/core/errors.h>
 #include <submap_slam/landmarks/landmark_mapper.h>
+#include <Eigen/Core>
 
 #include <cmath>
 
