@@ -2,6 +2,7 @@
 
 #include <mrpt/poses/CPose2D.h>
 
+#include <Eigen/Core>
 #include <cmath>
 #include <random>
 
