@@ -244,7 +244,7 @@ ExperimentSetting readSetting(const ExperimentFile& file, const std::string& nam
   const auto keys = file.keysOf(section);
   for (const auto& entry : keys) file.at(entry, [&] { setSetting(setting, entry); });
   checkSettings(file, heading, keys);
-  if (setting.variation.share > 0) checkVariation(file, heading, keys, setting);
+  checkVariation(file, heading, keys, setting);
   return setting;
 }
 

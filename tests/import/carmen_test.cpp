@@ -13,6 +13,8 @@ namespace {
 
 using mrpt::obs::CObservation2DRangeScan;
 using mrpt::obs::CObservationOdometry;
+using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -121,8 +123,8 @@ TEST(Carmen, BackwardStampsAreReplacedAndOrderIsKept) {
   ASSERT_EQ(scans.size(), 4u);
   EXPECT_NEAR(seconds(*scans[2]), 12, 1e-6);
   EXPECT_NEAR(log.all<CObservationOdometry>()[2]->odometry.x(), 2, 1e-9);
-  EXPECT_THAT(log.report.warnings[0], HasSubstr("1 of 4 ipc_timestamps do not increase"));
-  EXPECT_THAT(log.report.warnings[0], HasSubstr("2.500 s"));
+  EXPECT_THAT(log.report.warnings,
+              Contains(AllOf(HasSubstr("1 of 4 ipc_timestamps do not increase"), HasSubstr("2.500 s"))));
 }
 
 TEST(Carmen, StampsOfTheLoggerOnRequestOrNeed) {

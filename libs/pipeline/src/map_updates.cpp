@@ -17,14 +17,17 @@
 namespace submap_slam {
 namespace {
 
-/** What joiners say of a part of the map is not for the log of the run. */
-class Unheard : public Reporter {
+/** What joiners say of a part of the map is not for the log of the run; its warnings are shown all the same.
+ */
+class OnTheWay : public Reporter {
  public:
-  explicit Unheard(const Reporter& of_run) : of_run_(of_run) {}
+  explicit OnTheWay(Reporter& of_run) : of_run_(of_run) {}
   bool stopRequested() const override { return of_run_.stopRequested(); }
 
  private:
-  const Reporter& of_run_;
+  void showWarning(const std::string& line) override { of_run_.note("warning: " + line); }
+
+  Reporter& of_run_;
 };
 
 /** Times are of the wall clock. */
@@ -83,7 +86,7 @@ void MapUpdates::update(std::size_t submaps_in_file, double fraction) {
 }
 
 std::optional<JoinOutcome> MapUpdates::join() {
-  Unheard unheard(reporter_);
+  OnTheWay unheard(reporter_);
   try {
     return joining_.join(submaps_.shown(), unheard, submaps_.byHand());
   } catch (const std::exception& error) {
