@@ -126,8 +126,9 @@ TEST(LandmarkSubmap, WithADamagedCountIsRefusedBeforeMemoryIsTaken) {
     return static_cast<std::size_t>(m.getTotalBytesCount());
   };
   archive << submap;
-  // Behind the count are six numbers of the covariance and the end mark of the object.
-  auto* count = static_cast<uint8_t*>(memory.getRawBufferData()) + bytes_of(memory) - 1 - 6 * 8 - 4;
+  // Behind the count are six numbers of the covariance, whether ids are known, the number of nodes and the
+  // end mark of the object.
+  auto* count = static_cast<uint8_t*>(memory.getRawBufferData()) + bytes_of(memory) - 1 - 4 - 1 - 6 * 8 - 4;
   ASSERT_EQ(std::vector<uint8_t>(count, count + 4), std::vector<uint8_t>(4, 0));
   count[1] = 0x4e;  // 19968
   memory.Seek(0);

@@ -265,6 +265,8 @@ TEST_F(ExperimentTest, BundledExperimentsAreValid) {
     for (const char* end : {".rawlog", ".relations"})
       writeFile(path(std::string(name) + "/" + name + end), "");
   }
+  for (const char* name : {"victoria_park_observations.rawlog", "reference_path.tum", "gps.txt"})
+    writeFile(path(name), "");
   std::size_t files = 0;
   for (const auto& entry : fs::recursive_directory_iterator(SUBMAP_SLAM_SOURCE_DIR "/ini/experiments")) {
     if (!entry.is_regular_file()) continue;

@@ -108,7 +108,7 @@ TEST_F(CliLandmarkMapping, MapsALogWithIds) {
   EXPECT_EQ(m["association"], "known");
   EXPECT_EQ(m["frames"], kFrames);
   EXPECT_GE(m["submaps"], 3);
-  EXPECT_EQ(lines(results.at("trajectory.tum")), static_cast<std::size_t>(kFrames)) << "every frame";
+  EXPECT_EQ(lines(results.at("trajectory.tum")), 1u + kFrames) << "a head and every frame";
   EXPECT_FALSE(readLandmarkSubmaps(path("out/landmark_submaps.rawlog"))[0]->nodes.empty());
 }
 
@@ -202,7 +202,12 @@ TEST_F(CliLandmarkMapping, GridsAndLandmarksAlongOnePathAgree) {
 }
 
 TEST_F(CliLandmarkMapping, SaysSoWhereThereIsNothingToMap) {
-  expectRefused(run(map("nothing.rawlog", "out", {"--set", "mapping.maps=landmarks"})), "landmark");
+  const auto outcome = run(map("nothing.rawlog", "out", {"--set", "mapping.maps=landmarks"}));
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("warning: Landmarks 'TREES': no observation has any usable measurement"));
+  EXPECT_THAT(outcome.err, HasSubstr("\nsubmap-slam: error: the map would be empty: no landmark"));
+  EXPECT_EQ(lines(outcome.err), 2u) << outcome.err;
 }
 
 TEST_F(CliLandmarkMapping, RefusesEdits) {

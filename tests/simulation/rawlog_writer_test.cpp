@@ -131,13 +131,13 @@ TEST_F(RawlogFile, HoldsLandmarksBehindTheVelocitiesUpToThem) {
   ASSERT_EQ(rawlog.size(), log.velocities.size() + log.frames.size());
   std::size_t reading = 0, frame = 0;
   for (std::size_t i = 0; i < rawlog.size(); ++i) {
-    const auto odometry = rawlog.asObservation<mrpt::obs::CObservationOdometry>(i);
-    if (odometry) {
+    const auto observation = rawlog.getAsObservation(i);
+    if (const auto odometry = std::dynamic_pointer_cast<mrpt::obs::CObservationOdometry>(observation)) {
       EXPECT_TRUE(odometry->hasVelocities);
       EXPECT_EQ(odometry->velocityLocal.omega, log.velocities[reading++].velocity.omega);
       continue;
     }
-    const auto landmarks = rawlog.asObservation<mrpt::obs::CObservationBearingRange>(i);
+    const auto landmarks = std::dynamic_pointer_cast<mrpt::obs::CObservationBearingRange>(observation);
     ASSERT_TRUE(landmarks);
     EXPECT_EQ(landmarks->timestamp, log.velocities[reading - 1].stamp);
     expectSameLandmarks(*landmarks, log.frames[frame++].landmark_scans[0]);
