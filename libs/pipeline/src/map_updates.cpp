@@ -23,10 +23,9 @@ class OnTheWay : public Reporter {
  public:
   explicit OnTheWay(Reporter& of_run) : of_run_(of_run) {}
   bool stopRequested() const override { return of_run_.stopRequested(); }
+  void showWarning(const std::string& line) override { of_run_.showWarning(line); }
 
  private:
-  void showWarning(const std::string& line) override { of_run_.note("warning: " + line); }
-
   Reporter& of_run_;
 };
 

@@ -30,6 +30,9 @@ class Reporter {
   /** A line for the user that is not kept. */
   virtual void note(const std::string& line);
 
+  /** Shows a warning that is not kept. */
+  virtual void showWarning(const std::string& line);
+
   /** True once the user wants the run to end soon, with a valid partial result. */
   virtual bool stopRequested() const { return false; }
 
@@ -49,8 +52,6 @@ class Reporter {
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
-  virtual void showWarning(const std::string& line);
-
   std::vector<std::string> log_, warnings_;
 };
 
