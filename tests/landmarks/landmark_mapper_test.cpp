@@ -91,7 +91,7 @@ TEST(LandmarkMapper, AnUncertainPoseClosesASubmap) {
   Drive drive = simulateDrive(options);
   for (auto& frame : drive.stretch.frames) frame.landmark_scans[0].measurements.clear();
   LandmarkMapperParams params;
-  params.closing.max_pose_sigma = 10;  // of 0.05 m: 0.5 m or about three steps
+  params.closing.max_pose_sigma = 5;  // of 0.1 m, as nothing is seen: 0.5 m or three steps
   const auto submaps = LandmarkMapper(params, 1).map(drive.stretch);
   EXPECT_GT(submaps.size(), 5u);
   EXPECT_LT(submaps.size(), 30u);
