@@ -4,6 +4,7 @@
 #include <mrpt/gui/CDisplayWindowGUI.h>
 #include <mrpt/math/TLine3D.h>
 #include <submap_slam/core/errors.h>
+#include <submap_slam/viewer/scene_picture.h>
 #include <submap_slam/viewer/viewer_scene.h>
 
 #include <chrono>
@@ -125,7 +126,7 @@ void ViewerWindow::seeAll() {
   const double pixel_m = view.size / shorter_free;
   camera().setAzimuthDegrees(-90);
   camera().setElevationDegrees(90);
-  camera().setZoomDistance(static_cast<float>(pixel_m * shorter));
+  camera().setZoomDistance(zoomOf(pixel_m * shorter));
   camera().setCameraPointing(static_cast<float>(view.x - pixel_m * (kListWidth - kJoinWidth) / 2),
                              static_cast<float>(view.y - pixel_m * kTimelineHeight / 2), 0);
 }

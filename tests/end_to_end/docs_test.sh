@@ -34,7 +34,11 @@ read_help() {  # SUBCOMMAND, or nothing for the program's own; sets `help`
   help=${help_of[$1]}
 }
 
-keys=$("$program" parameters --ini | awk -F'[][ ]' '/^\[/ {section = $2} /^[a-z]/ {print section "." $1}')
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+"$program" simulate room -o "$scratch/simulated" --quiet  # its ini file has the keys of [simulation]
+keys=$({ "$program" parameters --ini && cat "$scratch/simulated.ini"; } |
+  awk -F'[][ ]' '/^\[/ {section = $2} /^[a-z]/ {print section "." $1}')
 
 check_command() {  # PAGE LINE
   local page=$1 subcommand="" help=""

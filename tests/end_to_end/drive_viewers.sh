@@ -12,11 +12,37 @@ printf '[tips]\nshow=0\n' >"$HOME/.RawLogViewer/config.cfg"  # else a tip covers
 started=()
 trap 'kill "${started[@]}" 2>/dev/null || true; rm -rf "$HOME"' EXIT
 
-picture() { /usr/bin/python3 -c 'import sys; from PIL import ImageGrab; ImageGrab.grab(xdisplay="").save(sys.argv[1])' "$pictures/$1.png"; }
+# Takes a picture once the screen shows something and stands still, or else 6 s after it showed something first.
+picture() {  # NAME
+  /usr/bin/python3 - "$pictures/$1.png" <<'PYTHON'
+import sys, time
+from PIL import ImageGrab
+end, still, last = time.monotonic() + 60, 0, None
+shown = False
+while still < 3 and time.monotonic() < end:
+    time.sleep(0.4)
+    seen = ImageGrab.grab(xdisplay="")
+    low, high = seen.convert("L").getextrema()
+    if low < high and not shown:
+        shown, end = True, time.monotonic() + 6
+    still = still + 1 if shown and last is not None and seen.tobytes() == last.tobytes() else 0
+    last = seen
+last.save(sys.argv[1])
+PYTHON
+}
 wait_for_window() {  # NAME
   timeout 60 xdotool search --sync --onlyvisible --name "$1" | head -n 1
 }
-keys() { xdotool key --delay 120 "$@"; sleep 1; }
+fill_screen() {  # NAME of the window; there is no window manager to do it
+  local window
+  window=$(wait_for_window "$1")
+  xdotool windowmove "$window" 0 0 windowsize "$window" 1400 900
+}
+close_viewer() {
+  kill "$viewer"
+  wait "$viewer" 2>/dev/null || true
+}
+keys() { xdotool key --delay 150 "$@"; }
 
 echo "submap-viewer"
 "$bin/submap-viewer" "$run" --width 1400 --height 900 &
@@ -24,42 +50,42 @@ viewer=$!
 started+=("$viewer")
 wait_for_window submap-viewer >/dev/null
 xdotool mousemove 700 400  # no window manager gives the focus
-sleep 3
 picture viewer-start
 xdotool mousemove 400 842 click 1  # the timeline
-sleep 1
 keys Right Right Page_Down
 picture viewer-timeline
 keys n n r c
 picture viewer-selected
 keys d e
+for ((i = 0; i < 60; ++i)); do
+  if [[ -e $run-edited.edits.txt ]]; then break; fi
+  sleep 0.5
+done
 keys d j
-sleep 10
+picture viewer-joining
 keys m v
 picture viewer-joined
 keys h
 picture viewer-help
 kill -0 "$viewer" || { echo "submap-viewer has ended" >&2; exit 1; }
-kill "$viewer"
-wait "$viewer" 2>/dev/null || true
+close_viewer
 
 echo "RawLogViewer"
 RawLogViewer -l "$plugin" "$run/submaps.rawlog" >/dev/null 2>&1 &
 viewer=$!
 started+=("$viewer")
-wait_for_window RawLogViewer >/dev/null
-sleep 6
+fill_screen RawLogViewer
+picture rawlogviewer-start
 xdotool mousemove 120 250 click 1
-sleep 3
 picture rawlogviewer
-kill "$viewer"
-wait "$viewer" 2>/dev/null || true
+close_viewer
 
 echo "SceneViewer3D, without the plugin"
 SceneViewer3D "$run/map.3Dscene" >/dev/null 2>&1 &
 viewer=$!
 started+=("$viewer")
-sleep 8
+fill_screen SceneViewer
+picture sceneviewer-start
+xdotool mousemove 700 450 click --repeat 12 --delay 100 5  # the wheel, away from the map
 picture sceneviewer
-kill "$viewer"
-wait "$viewer" 2>/dev/null || true
+close_viewer

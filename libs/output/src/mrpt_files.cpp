@@ -121,7 +121,6 @@ void writeScene(const std::string& file, const EvidenceGrid& map, const Trajecto
 void writeSceneLog(const std::string& file, const EvidenceGrid& map, const Trajectory& trajectory,
                    const std::vector<CPosePDFGaussian>& frames) {
   mrpt::obs::CObservation3DScene observation;
-  observation.sensorLabel = "MAP";
   observation.timestamp = trajectory.empty() ? INVALID_TIMESTAMP : trajectory.back().stamp;
   observation.scene = mapScene(map, trajectory, frames);
   writeBytes(file, compressedArchive(observation));

@@ -12,7 +12,7 @@ mrpt::opengl::CCamera cameraFor(const View& view) {
   mrpt::opengl::CCamera camera;
   camera.setOrthogonal(true);
   camera.setPointingAt(static_cast<float>(view.x), static_cast<float>(view.y), 0);
-  camera.setZoomDistance(static_cast<float>(view.size));
+  camera.setZoomDistance(zoomOf(view.size));
   camera.setAzimuthDegrees(-90);
   camera.setElevationDegrees(90);
   return camera;
@@ -33,6 +33,8 @@ mrpt::img::CImage render(const mrpt::opengl::COpenGLScene& scene, const View& vi
 }
 
 }  // namespace
+
+float zoomOf(double shorter_side_m) { return static_cast<float>(2 * shorter_side_m); }
 
 void lookFromAbove(mrpt::opengl::COpenGLScene& scene, const View& view) {
   scene.getViewport()->getCamera() = cameraFor(view);

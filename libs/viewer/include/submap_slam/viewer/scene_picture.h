@@ -12,6 +12,9 @@ namespace submap_slam {
 void writePicture(const std::string& file, const mrpt::opengl::COpenGLScene& scene, const View& view,
                   unsigned width, unsigned height);
 
+/** Distance of MRPT's orthogonal camera from which the shorter side of a picture shows that many m. */
+float zoomOf(double shorter_side_m);
+
 /** Makes the camera of a scene look straight down. */
 void lookFromAbove(mrpt::opengl::COpenGLScene& scene, const View& view);
 
