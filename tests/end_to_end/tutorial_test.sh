@@ -17,7 +17,7 @@ fail() { echo "FAILED: $*" >&2; ((++failures)); }
 # The commands of the page, each as a line "$ COMMAND" with what the page shows below it; blocks end at a line of text.
 shown() { awk '/^    / { print substr($0, 5); next } { print "" }' "$source_dir/docs/tutorial.md"; }
 
-is_window() { [[ $1 =~ ^(RawLogViewer|SceneViewer3D|submap-viewer|submap-rawlogviewer|xdg-open|firefox)\  ]]; }
+is_window() { [[ $1 != *" --screenshot "* && $1 =~ ^(RawLogViewer|SceneViewer3D|submap-viewer|submap-rawlogviewer|xdg-open|firefox)\  ]]; }
 
 # A file that the page shows with cat, and that the reader is to write.
 write_shown() {  # COMMAND OUTPUT
