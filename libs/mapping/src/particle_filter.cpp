@@ -57,8 +57,9 @@ void ParticleFilter::step(const LaserPoints& scan, const std::optional<TPose2D>&
       continue;
     }
     const TPose2D motion = increment.value_or(lastIncrement(particle.path));
-    const PosePrior prior{compose(particle.path.back().pose, motion),
-                          motionInformation(params_.motion, motion)};
+    PosePrior prior{compose(particle.path.back().pose, motion), motionInformation(params_.motion, motion)};
+    // The robot need not go on as before: without odometry scans must be free to say that it set off.
+    if (!increment) prior.information *= params_.slip_information;
     const auto proposals = propose(particle, scan, prior);
     for (std::size_t k = 1; k < proposals.size(); ++k) {
       next.push_back(particle);
