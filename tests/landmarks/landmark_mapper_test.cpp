@@ -95,7 +95,10 @@ TEST(LandmarkMapper, AnUncertainPoseClosesASubmap) {
   const auto submaps = LandmarkMapper(params, 1).map(drive.stretch);
   EXPECT_GT(submaps.size(), 5u);
   EXPECT_LT(submaps.size(), 30u);
-  for (const auto& submap : submaps) EXPECT_NO_THROW(requireUsable(*submap)) << "without features";
+  for (const auto& submap : submaps) {
+    EXPECT_NO_THROW(requireUsable(*submap)) << "without features";
+    EXPECT_TRUE(submap->ids_known) << "nothing seen has no id";
+  }
 }
 
 TEST(LandmarkMapper, GoesOnWithoutOdometry) {

@@ -79,15 +79,13 @@ LandmarkEstimate track(const std::vector<Frame>& frames, const LandmarkMapperPar
   return filter->estimate();
 }
 
+/** That no measurement lacks one: a submap that saw nothing does not make those of the others useless. */
 bool idsAreKnown(const std::vector<Frame>& frames, const Span& span) {
-  bool measured = false;
   for (std::size_t i = span.first; i < span.last + (span.has_successor ? 0 : 1); ++i)
     for (const LandmarkScan& scan : frames[i].landmark_scans)
-      for (const LandmarkMeasurement& m : scan.measurements) {
+      for (const LandmarkMeasurement& m : scan.measurements)
         if (!m.id) return false;
-        measured = true;
-      }
-  return measured;
+  return true;
 }
 
 mrpt::math::TPose2D toTPose(const Pose& pose) { return {pose[0], pose[1], wrapped(pose[2])}; }
