@@ -26,7 +26,7 @@ def expect(condition, text):
         raise Failure(text)
 
 
-def wait_until(condition, text, timeout_s=20):
+def wait_until(condition, text, timeout_s=60):
     end = time.monotonic() + timeout_s
     while not condition():
         expect(time.monotonic() < end, f"waited in vain: {text}")
