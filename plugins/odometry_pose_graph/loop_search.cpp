@@ -30,6 +30,18 @@ constexpr double kGap_m = 100, kGap_rad = 3;
 /** With a larger standard deviation a heading is not known at all: the robot was carried. */
 constexpr double kHeadingUnknown_rad = 0.9;
 
+/** A relation with a larger standard deviation is hardly known: matches in it agree with nearly everything.
+ */
+constexpr double kHardlyKnown_m = 2;
+
+/** Two such matches bear each other out only if knowing one shrinks the volume of where the other may be to
+ * this share. */
+constexpr double kTellsMuch = 0.1;
+
+bool isHardlyKnown(const Matrix3d& covariance) {
+  return std::max(covariance(0, 0), covariance(1, 1)) > kHardlyKnown_m * kHardlyKnown_m;
+}
+
 /** Odometry's idea of T_s_end, if the log has odometry at both ends. */
 std::optional<TPose2D> odometryOfEnd(const GridSubmap& submap, const GridSubmap& next) {
   if (submap.nodes.empty() || next.nodes.empty()) return std::nullopt;
@@ -125,7 +137,8 @@ class LoopSearch::State {
                       const Matrix3d& match_covariance) const;
   std::size_t list(std::size_t k, const Task& task, const Matrix3d& covariance, const std::string& refused);
   bool acceptVerified(std::size_t k, const FrameCovariances& covariances);
-  bool agree(const Link& a, const Link& b, const FrameCovariances& covariances) const;
+  enum class Agreement { kAgree, kContradict, kTellNothing };
+  Agreement compare(const Link& a, const Link& b, const FrameCovariances& covariances) const;
   void accept(const Pending& pending, const std::string& reason);
 
   const LoopSearchParams params_;
@@ -226,6 +239,8 @@ std::string LoopSearch::State::refusal(std::size_t k, const Task& task, const Su
     return fmt::format("contradicts free space: agreement {:.2f}", match.agreement);
   if (task.window.half_xy > params_.rival_window && match.rival_score > 0)
     return fmt::format("ambiguous: scores {:.2f} here, {:.2f} elsewhere", match.score, match.rival_score);
+  // Linearised, a covariance says nothing of where the older frame is if the heading may be any.
+  if (task.covariance(2, 2) > kHeadingUnknown_rad * kHeadingUnknown_rad) return {};
   const Vector3d e = relationError({}, match.T_ref_other, task.window.centre).e;
   const double chi2 = e.dot((task.covariance + match_covariance).inverse() * e);
   if (chi2 > kChi2Alone) return fmt::format("too far from where the chain leads: chi2 {:.0f}", chi2);
@@ -247,7 +262,8 @@ std::size_t LoopSearch::State::list(std::size_t k, const Task& task, const Matri
   return result_.candidates.size() - 1;
 }
 
-bool LoopSearch::State::agree(const Link& a, const Link& b, const FrameCovariances& covariances) const {
+LoopSearch::State::Agreement LoopSearch::State::compare(const Link& a, const Link& b,
+                                                        const FrameCovariances& covariances) const {
   const FrameCovariances::Pair pa{a.from, a.to}, pb{b.from, b.to};
   const auto& frames = result_.graph.frames;
   Eigen::Matrix<double, 6, 1> e;
@@ -258,7 +274,11 @@ bool LoopSearch::State::agree(const Link& a, const Link& b, const FrameCovarianc
   S.bottomRightCorner<3, 3>() = covariances.relative(pb) + b.covariance;
   S.topRightCorner<3, 3>() = covariances.crossed(pa, pb);
   S.bottomLeftCorner<3, 3>() = S.topRightCorner<3, 3>().transpose();
-  return e.dot(S.ldlt().solve(e)) < kChi2Together;
+  const Matrix3d A = S.topLeftCorner<3, 3>(), B = S.bottomRightCorner<3, 3>();
+  const double apart = std::sqrt(A.determinant() * B.determinant());
+  const bool tells = std::sqrt(std::max(0.0, S.determinant())) < kTellsMuch * apart;
+  if ((isHardlyKnown(A) || isHardlyKnown(B)) && !tells) return Agreement::kTellNothing;
+  return e.dot(S.ldlt().solve(e)) < kChi2Together ? Agreement::kAgree : Agreement::kContradict;
 }
 
 void LoopSearch::State::accept(const Pending& pending, const std::string& reason) {
@@ -278,7 +298,7 @@ bool LoopSearch::State::acceptVerified(std::size_t k, const FrameCovariances& co
     if (pending_[p].window <= params_.lone_window) reasons[p] = "matched where it was expected";
     for (std::size_t q = 0; q < p; ++q) {
       const Link &a = pending_[p].link, &b = pending_[q].link;
-      if (a.from == b.from || !agree(a, b, covariances)) continue;
+      if (a.from == b.from || compare(a, b, covariances) != Agreement::kAgree) continue;
       const auto because = [this](const Link& other) {
         return fmt::format("agrees with {} to {}", submaps_[other.from]->id, submaps_[other.to]->id);
       };
@@ -286,6 +306,26 @@ bool LoopSearch::State::acceptVerified(std::size_t k, const FrameCovariances& co
       if (reasons[q].empty()) reasons[q] = because(a);
     }
   }
+  // In places that look alike several groups of matches may each agree among themselves: then none is
+  // believed.
+  std::vector<bool> contradicted(pending_.size(), false);
+  for (std::size_t p = 0; p < pending_.size(); ++p)
+    for (std::size_t q = 0; q < p; ++q) {
+      const Link &a = pending_[p].link, &b = pending_[q].link;
+      const bool both = !reasons[p].empty() && !reasons[q].empty();
+      const bool same_older = a.from == b.from && a.to == b.to;
+      if (!both || same_older || pending_[p].window <= params_.lone_window) continue;
+      if (!isHardlyKnown(covariances.relative({a.from, a.to})) ||
+          !isHardlyKnown(covariances.relative({b.from, b.to})) ||
+          compare(a, b, covariances) != Agreement::kContradict)
+        continue;
+      contradicted[p] = contradicted[q] = true;
+    }
+  for (std::size_t p = 0; p < pending_.size(); ++p)
+    if (contradicted[p]) {
+      reasons[p].clear();
+      result_.candidates[pending_[p].entry].reason = "contradicted by matches as good elsewhere";
+    }
   bool any = false;
   std::vector<Pending> waiting;
   for (std::size_t p = 0; p < pending_.size(); ++p) {
