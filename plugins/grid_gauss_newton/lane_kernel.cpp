@@ -21,8 +21,8 @@ struct Loops {
   static constexpr std::size_t kWidth = bytes / sizeof(Scalar);
   using Vector [[gnu::vector_size(bytes), gnu::may_alias]] = Scalar;
   using Integers [[gnu::vector_size(kWidth * sizeof(int32_t)), gnu::may_alias]] = int32_t;
-  using TwoCells [[gnu::vector_size(8), gnu::may_alias, gnu::aligned(4)]] = int32_t;
-  using FourCells [[gnu::vector_size(16), gnu::may_alias]] = int32_t;
+  using Four [[gnu::vector_size(16), gnu::may_alias, gnu::aligned(8)]] =
+      float;  // two cells next to each other
   using FourScalars [[gnu::vector_size(4 * sizeof(Scalar)), gnu::may_alias]] = Scalar;
 
   static const Vector& at(const Row<Scalar>& row, std::size_t k) {
@@ -59,41 +59,36 @@ struct Loops {
       marked[k] |= static_cast<uint8_t>(surfaces[block[k]] >> bit[k] & 1);
   }
 
-  SUBMAP_SLAM_INLINE static TwoCells two(const StoredCell* cells) {
-    return *reinterpret_cast<const TwoCells*>(cells);
+  SUBMAP_SLAM_INLINE static Four two(const EvidenceCell* cells) {
+    return *reinterpret_cast<const Four*>(cells);
   }
 
-  /** The four cells around points, as they are stored: (0, 0), (1, 0), (0, 1) and (1, 1). */
-  using Corners = std::array<Row<int32_t>, 4>;
+  /** Values of the four cells around points: L and N of cells (0, 0), (1, 0), (0, 1) and (1, 1). */
+  using Corners = std::array<Row<float>, 8>;
 
-  /** Writes cells (0, 0), (1, 0) of four points, or (0, 1), (1, 1), to two rows. */
-  SUBMAP_SLAM_INLINE static void transpose(const TwoCells& p, const TwoCells& q, const TwoCells& r,
-                                           const TwoCells& s, Corners& corners, std::size_t first,
-                                           std::size_t point) {
-    const FourCells pq = __builtin_shufflevector(p, q, 0, 2, 1, 3);
-    const FourCells rs = __builtin_shufflevector(r, s, 0, 2, 1, 3);
-    reinterpret_cast<FourCells&>(corners[first][point]) = __builtin_shufflevector(pq, rs, 0, 1, 4, 5);
-    reinterpret_cast<FourCells&>(corners[first + 1][point]) = __builtin_shufflevector(pq, rs, 2, 3, 6, 7);
+  /** Writes cells (0, 0), (1, 0) of four points, or (0, 1), (1, 1), to four rows of L, N, L and N. */
+  SUBMAP_SLAM_INLINE static void transpose(const Four& p, const Four& q, const Four& r, const Four& s,
+                                           Corners& corners, std::size_t first, std::size_t point) {
+    const Four pq_low = __builtin_shufflevector(p, q, 0, 4, 1, 5);
+    const Four rs_low = __builtin_shufflevector(r, s, 0, 4, 1, 5);
+    const Four pq_high = __builtin_shufflevector(p, q, 2, 6, 3, 7);
+    const Four rs_high = __builtin_shufflevector(r, s, 2, 6, 3, 7);
+    const auto put = [&](std::size_t k, const Four& value) {
+      reinterpret_cast<Four&>(corners[first + k][point]) = value;
+    };
+    put(0, __builtin_shufflevector(pq_low, rs_low, 0, 1, 4, 5));
+    put(1, __builtin_shufflevector(pq_low, rs_low, 2, 3, 6, 7));
+    put(2, __builtin_shufflevector(pq_high, rs_high, 0, 1, 4, 5));
+    put(3, __builtin_shufflevector(pq_high, rs_high, 2, 3, 6, 7));
   }
 
   using Floats [[gnu::vector_size(kWidth * sizeof(float)), gnu::may_alias]] = float;
-
-  enum class Field { kLogOdds, kHits };
-
-  /** Half floats become floats when their bits are moved and the exponent is corrected; see StoredCell. */
-  template <Field field>
-  SUBMAP_SLAM_INLINE static Floats valueOf(const Integers& cells) {
-    Integers bits = (cells >> 3) & 0x0fffe000;
-    if constexpr (field == Field::kLogOdds) bits = ((cells & 0x7fff) << 13) | ((cells & 0x8000) << 16);
-    return __builtin_bit_cast(Floats, bits) * 0x1p112f;
-  }
-
-  template <Field field>
-  SUBMAP_SLAM_INLINE static void interpolate(const Corners& corners, std::size_t point, const Vector& fu,
-                                             const Vector& fv, Vector& value, Vector& du, Vector& dv) {
+  SUBMAP_SLAM_INLINE static void interpolate(const Corners& corners, std::size_t field, std::size_t point,
+                                             const Vector& fu, const Vector& fv, Vector& value, Vector& du,
+                                             Vector& dv) {
     Vector c[4];  // std::array would lose that they are vectors
     for (std::size_t k = 0; k < 4; ++k) {
-      const Floats corner = valueOf<field>(reinterpret_cast<const Integers&>(corners[k][point]));
+      const Floats& corner = reinterpret_cast<const Floats&>(corners[2 * k + field][point]);
       if constexpr (std::is_same_v<Scalar, float>)
         c[k] = corner;  // GCC would convert one by one
       else
@@ -126,22 +121,21 @@ struct Loops {
       at(m.y, k) = view.y0 + point.v;
     }
     const int32_t* const origins = view.table.origins;
-    const StoredCell* const cells = view.table.cells;
+    const EvidenceCell* const cells = view.table.cells;
     for (std::size_t k = 0; k < points.count; k += 4) {
-      const StoredCell *const p = cells + (origins[block[k]] + within[k]),
-                              *const q = cells + (origins[block[k + 1]] + within[k + 1]),
-                              *const r = cells + (origins[block[k + 2]] + within[k + 2]),
-                              *const s = cells + (origins[block[k + 3]] + within[k + 3]);
+      const EvidenceCell *const p = cells + (origins[block[k]] + within[k]),
+                                *const q = cells + (origins[block[k + 1]] + within[k + 1]),
+                                *const r = cells + (origins[block[k + 2]] + within[k + 2]),
+                                *const s = cells + (origins[block[k + 3]] + within[k + 3]);
       transpose(two(p), two(q), two(r), two(s), corners, 0, k);
-      transpose(two(p + kStride), two(q + kStride), two(r + kStride), two(s + kStride), corners, 2, k);
+      transpose(two(p + kStride), two(q + kStride), two(r + kStride), two(s + kStride), corners, 4, k);
     }
-    for (Row<int32_t>& row : corners)
+    for (Row<float>& row : corners)
       for (std::size_t k = points.count; k < padded; ++k) row[k] = 0;
     for (std::size_t k = 0; k < padded; k += kWidth) {
-      interpolate<Field::kLogOdds>(corners, k, at(fu, k), at(fv, k), at(m.log_odds, k), at(m.log_odds_u, k),
-                                   at(m.log_odds_v, k));
-      interpolate<Field::kHits>(corners, k, at(fu, k), at(fv, k), at(m.hits, k), at(m.hits_u, k),
-                                at(m.hits_v, k));
+      interpolate(corners, 0, k, at(fu, k), at(fv, k), at(m.log_odds, k), at(m.log_odds_u, k),
+                  at(m.log_odds_v, k));
+      interpolate(corners, 1, k, at(fu, k), at(fv, k), at(m.hits, k), at(m.hits_u, k), at(m.hits_v, k));
     }
   }
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -22,31 +21,6 @@ float aboveBackground(float log_odds, float hits, double background) {
   return std::abs(excess) <= kRounding * std::abs(expected) ? 0.0f : static_cast<float>(excess);
 }
 
-/** Differences of the exponents' biases, and of the lengths of the mantissas, of single and half precision.
- */
-constexpr uint32_t kBias = (127 - 15) << 23;
-constexpr int kMantissa = 23 - 10;
-
-uint32_t toHalf(float value) {
-  constexpr float kSmallest = 1.0f / (1 << 14), kLargest = 65504;
-  if (!(std::abs(value) >= kSmallest)) return 0;
-  const float kept = std::min(std::abs(value), kLargest);
-  uint32_t bits = 0;
-  std::memcpy(&bits, &kept, sizeof bits);
-  const uint32_t even = bits >> kMantissa & 1;  // halves are rounded to even
-  bits = (bits - kBias + (1u << (kMantissa - 1)) - 1 + even) >> kMantissa;
-  return value < 0 ? bits | 0x8000 : bits;
-}
-
-float fromHalf(uint32_t half) {
-  const uint32_t magnitude = half & 0x7fff;
-  if (magnitude == 0) return 0;
-  const uint32_t bits = (magnitude << kMantissa) + kBias;
-  float value = 0;
-  std::memcpy(&value, &bits, sizeof value);
-  return (half & 0x8000) != 0 ? -value : value;
-}
-
 /** Bilinear value and gradient per cell of the four corners of a cell, in the order (0, 0), (1, 0), (0, 1),
  * (1, 1). */
 void interpolate(const std::array<double, 4>& corner, double a, double b, double scale, double& value,
@@ -58,13 +32,6 @@ void interpolate(const std::array<double, 4>& corner, double a, double b, double
 }
 
 }  // namespace
-
-StoredCell::StoredCell(const EvidenceCell& cell) {
-  const uint32_t hits = toHalf(cell.hits);
-  if (hits != 0) bits = hits << 16 | toHalf(cell.log_odds);
-}
-
-EvidenceCell StoredCell::value() const { return {fromHalf(bits & 0xffff), fromHalf(bits >> 16)}; }
 
 EvidenceRaster::EvidenceRaster(double x0_m, double y0_m, double cell_size, int column_count, int row_count)
     : x0(x0_m),
@@ -131,18 +98,16 @@ EvidenceLevel::EvidenceLevel(const EvidenceRaster& raster)
 
 void EvidenceLevel::addBlock(const EvidenceRaster& raster, int block_column, int block_row) {
   const Block corner{block_column * kBlock, block_row * kBlock, 0};
-  std::array<StoredCell, kStride * kStride> cells{};
+  std::array<EvidenceCell, kStride * kStride> cells{};
   const int columns = std::min(kStride, raster.columns - corner.column);
   const int rows = std::min(kStride, raster.rows - corner.row);
   for (int r = 0; r < rows; ++r)
-    std::transform(&raster.cell(corner.column, corner.row + r),
-                   &raster.cell(corner.column, corner.row + r) + columns, cells.begin() + r * kStride,
-                   [](const EvidenceCell& c) { return StoredCell(c); });
-  if (std::none_of(cells.begin(), cells.end(), [](const StoredCell& c) { return c.bits != 0; })) return;
+    std::copy_n(&raster.cell(corner.column, corner.row + r), columns, cells.begin() + r * kStride);
+  if (std::none_of(cells.begin(), cells.end(), [](const EvidenceCell& c) { return c.hits > 0; })) return;
 
   Block block = corner;
   const auto above = [&cells](int c, int r) {
-    return cells[static_cast<std::size_t>(r * kStride + c)].value().log_odds != 0;
+    return cells[static_cast<std::size_t>(r * kStride + c)].log_odds != 0;
   };
   for (int r = 0; r < kBlock; ++r)
     for (int c = 0; c < kBlock; ++c)
@@ -173,13 +138,12 @@ EvidenceSample EvidenceLevel::sample(double column, double row) const {
   const double c = std::floor(column), r = std::floor(row);
   const int ci = static_cast<int>(c), ri = static_cast<int>(r);
   const EvidenceBlockTable table = tableAt(ci, ri);
-  const StoredCell* low = table.cells + *table.origins + (ri & (kBlock - 1)) * kStride + (ci & (kBlock - 1));
-  const std::array<EvidenceCell, 4> around{low[0].value(), low[1].value(), low[kStride].value(),
-                                           low[kStride + 1].value()};
+  const EvidenceCell* low =
+      table.cells + *table.origins + (ri & (kBlock - 1)) * kStride + (ci & (kBlock - 1));
+  const EvidenceCell* high = low + kStride;
   const auto corners = [&](float EvidenceCell::*value) {
-    std::array<double, 4> values{};
-    for (std::size_t k = 0; k < 4; ++k) values[k] = static_cast<double>(around[k].*value);
-    return values;
+    return std::array<double, 4>{static_cast<double>(low[0].*value), static_cast<double>(low[1].*value),
+                                 static_cast<double>(high[0].*value), static_cast<double>(high[1].*value)};
   };
   const double scale = 1 / resolution_;
   interpolate(corners(&EvidenceCell::log_odds), column - c, row - r, scale, s.log_odds, s.log_odds_gradient);

@@ -15,17 +15,6 @@ struct EvidenceCell {
   float hits = 0;      ///< number of observations; 0: unknown
 };
 
-/** A cell as the pyramid stores it: both values as half floats (IEEE 754 binary16), log_odds in the lower
- * half. Eleven significant bits are far below the noise of evidence, and half the memory. Values up to 2⁻¹⁴
- * count as zero and those beyond 65504 as that, so that look-ups at speed need no exceptions. */
-struct StoredCell {
-  uint32_t bits = 0;
-
-  StoredCell() = default;
-  explicit StoredCell(const EvidenceCell& cell);
-  EvidenceCell value() const;
-};
-
 /** Bilinear values at a point and their gradients along the submap's axes. */
 struct EvidenceSample {
   double log_odds = 0, hits = 0;
@@ -70,13 +59,13 @@ struct EvidenceBlockTable {
   const int32_t* origins;    ///< index of the block's first cell; 0, of unknown cells, where none is stored
   const uint64_t* surfaces;  ///< EvidenceLevel::Block::surface, 0 where none is stored
   int stride;
-  const StoredCell* cells;  ///< kStride × kStride cells of a block, row by row
+  const EvidenceCell* cells;  ///< kStride × kStride cells of a block, row by row
 };
 
-/** The evidence of one submap at one resolution, to the precision of StoredCell. Only blocks of 8 × 8 cells
- * with something observed are stored: a submap fills a tenth of its bounding box. Index coordinates (cell
- * centres are integers) count from the raster's cell (0, 0); everything outside the raster is unknown, so the
- * interpolated fields are continuous everywhere. */
+/** The evidence of one submap at one resolution. Only blocks of 8 × 8 cells with something observed are
+ * stored: a submap fills a tenth of its bounding box. Index coordinates (cell centres are integers) count
+ * from the raster's cell (0, 0); everything outside the raster is unknown, so the interpolated fields are
+ * continuous everywhere. */
 class EvidenceLevel {
  public:
   static constexpr int kBlockShift = 3, kBlock = 1 << kBlockShift;
@@ -127,7 +116,7 @@ class EvidenceLevel {
   std::vector<int32_t> origins_;    // row by row
   std::vector<uint64_t> surfaces_;  // row by row
   std::vector<Block> blocks_;
-  std::vector<StoredCell> cells_;  // block by block, the first one unknown
+  std::vector<EvidenceCell> cells_;  // block by block, the first one unknown
 };
 
 /** All submaps at one resolution, in the order of the submaps. */

@@ -244,7 +244,6 @@ TEST(ReducedSystem, BackgroundChangesNothing) {
     for (std::size_t k = 0; k < grid.cells(); ++k) {
       float& log_odds = grid.log_odds.begin()[static_cast<std::ptrdiff_t>(k)];
       log_odds = std::max(log_odds, -0.9f * grid.hits.data()[k]) - 0.1f * grid.hits.data()[k];
-      log_odds = std::round(32 * log_odds) / 32;  // half floats hold it, with and without the background
     }
   }
   const double background = backgroundOf(submaps);

@@ -33,8 +33,7 @@ bool hides(const Wall& wall, const mrpt::math::TPoint2D& from, const mrpt::math:
 /** Portable: the standard distributions differ between libraries. */
 double uniform(std::mt19937& generator) { return static_cast<double>(generator()) / 4294967296.0; }
 
-/** Calls evidence(x, y) → (log-odds per hit, hits) at each cell centre. The sums are rounded to what half
- * floats hold exactly, so that they can be compared with those of a pyramid. */
+/** Calls evidence(x, y) → (log-odds per hit, hits) at each cell centre. */
 template <class Evidence>
 void fill(EvidenceGrid& grid, Evidence evidence) {
   for (unsigned cy = 0; cy < grid.sizeY(); ++cy)
@@ -42,8 +41,8 @@ void fill(EvidenceGrid& grid, Evidence evidence) {
       const auto [log_odds, hits] =
           evidence(grid.log_odds.idx2x(static_cast<int>(cx)), grid.log_odds.idx2y(static_cast<int>(cy)));
       if (hits <= 0) continue;
-      *grid.log_odds.cellByIndex(cx, cy) = static_cast<float>(std::round(32 * log_odds * hits) / 32);
-      *grid.hits.cellByIndex(cx, cy) = static_cast<float>(std::round(64 * hits) / 64);
+      *grid.log_odds.cellByIndex(cx, cy) = static_cast<float>(log_odds * hits);
+      *grid.hits.cellByIndex(cx, cy) = static_cast<float>(hits);
     }
 }
 
