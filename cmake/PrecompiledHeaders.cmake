@@ -4,17 +4,18 @@ function(submap_slam_precompile_headers)
   set(headers
     <mrpt/math/TPose2D.h> <mrpt/math/wrap2pi.h> <mrpt/obs/CObservation2DRangeScan.h> <mrpt/opengl/Visualizable.h>
     <mrpt/poses/CPosePDFGaussian.h> <mrpt/serialization/CArchive.h>
-    <Eigen/Dense> <fmt/format.h>
+    <Eigen/Dense>
     <algorithm> <cmath> <filesystem> <fstream> <functional> <map> <memory> <optional> <string> <vector>)
   file(WRITE ${PROJECT_BINARY_DIR}/precompiled/empty.cpp "")
   # Programs are compiled with -fPIE, libraries with -fPIC, so there is one set for each.
   add_library(precompiled_for_libraries OBJECT ${PROJECT_BINARY_DIR}/precompiled/empty.cpp)
   add_executable(precompiled_for_programs ${PROJECT_BINARY_DIR}/precompiled/main.cpp)
   file(WRITE ${PROJECT_BINARY_DIR}/precompiled/main.cpp "int main() {}\n")
-  target_link_libraries(precompiled_for_libraries PRIVATE submap_core submap_slam_options)
-  target_link_libraries(precompiled_for_programs PRIVATE submap_core submap_slam_options GTest::gmock)
+  set(projects mrpt::obs mrpt::opengl mrpt::poses mrpt::serialization Eigen3::Eigen submap_slam_options)
+  target_link_libraries(precompiled_for_libraries PRIVATE ${projects})
+  target_link_libraries(precompiled_for_programs PRIVATE ${projects})
   target_precompile_headers(precompiled_for_libraries PRIVATE ${headers})
-  target_precompile_headers(precompiled_for_programs PRIVATE ${headers} <gmock/gmock.h> <gtest/gtest.h>)
+  target_precompile_headers(precompiled_for_programs PRIVATE ${headers})
   submap_slam_reuse_headers(${PROJECT_SOURCE_DIR})
 endfunction()
 

@@ -22,7 +22,7 @@ void requireFinishedRun(const fs::path& folder) {
 
 Json readMetrics(const fs::path& file) {
   std::ifstream in(file);
-  const Json metrics = Json::parse(in, nullptr, false);
+  Json metrics = Json::parse(in, nullptr, false);
   if (!metrics.is_object())
     throw InputError(file.string() + ": is no JSON object, expected the figures of a run");
   return metrics;

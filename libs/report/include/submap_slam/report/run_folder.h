@@ -14,6 +14,7 @@
 namespace submap_slam {
 
 /** A finished run, read back from the folder that it wrote. */
+// NOLINTNEXTLINE(bugprone-exception-escape): takes asserts of the JSON library for throws
 struct RunFolder {
   std::string name;                ///< of the folder
   nlohmann::ordered_json metrics;  ///< an object

@@ -12,6 +12,7 @@
 namespace submap_slam {
 
 /** What is known of a run beside its map. */
+// NOLINTNEXTLINE(bugprone-exception-escape): takes asserts of the JSON library for throws
 struct RunRecord {
   std::string input;                  ///< name of the log or of the file of submaps, without its folder
   std::string ini;                    ///< every effective parameter
