@@ -32,14 +32,14 @@ class Row {
   std::string word() {
     if (at_ > text_.size()) throw InputError(where_ + ": has too few columns");
     const std::size_t end = std::min(text_.find(',', at_), text_.size());
-    const std::string field = text_.substr(at_, end - at_);
+    std::string field = text_.substr(at_, end - at_);
     at_ = end + 1;
     return field;
   }
 
   /** What is left, without the quotes around it. */
   std::string rest() const {
-    const std::string left = at_ < text_.size() ? text_.substr(at_) : "";
+    std::string left = at_ < text_.size() ? text_.substr(at_) : "";
     return left.size() >= 2 ? left.substr(1, left.size() - 2) : "";
   }
 
