@@ -39,7 +39,9 @@ Outcome mapAndJoin(const std::vector<Frame>& frames) {
   StretchParams stretching;
   stretching.max_distance = 6;
   stretching.max_nodes = 60;
-  outcome.submaps = mapLog(frames, {}, 1, stretching);
+  GridMapperParams mapper;
+  mapper.closing.carried = true;
+  outcome.submaps = mapLog(frames, mapper, 1, stretching);
   uint32_t id = 0;
   for (const auto& submap : outcome.submaps) submap->id = id++;
   OdometryPoseGraph joiner;

@@ -63,6 +63,7 @@ std::string describeBreaks(const GridSubmaps& submaps, const std::vector<Constra
   const auto breaks = breaksOf(submaps, constraints);
   if (breaks.empty()) return {};
   std::vector<uint32_t> ids;
+  ids.reserve(breaks.size());
   for (const std::size_t k : breaks) ids.push_back(submaps[k]->id);
   const std::size_t shown = std::min(ids.size(), kMostInWords);
   const auto more = ids.size() > shown ? fmt::format(" and {} more", ids.size() - shown) : std::string();

@@ -52,7 +52,7 @@ std::optional<DoubtfulStep> DoubtfulSteps::find(const LocalPath& path, std::size
                                                 std::size_t to, bool last) const {
   for (std::size_t i = from + 1; i <= to; ++i) {
     const std::size_t strays = scansThatFitNothing(path, i - begin);
-    if (strays > kStrayScans || (last && i == to && strays > 0))
+    if (limits_.carried && (strays > kStrayScans || (last && i == to && strays > 0)))
       return DoubtfulStep{i + 1 - strays, {kAnywhere_m, kAnywhere_m, kAnywhere_rad}};
     if (const auto off = contradiction(path, begin, i)) return DoubtfulStep{i, *off};
   }

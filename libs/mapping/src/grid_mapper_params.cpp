@@ -104,6 +104,11 @@ void describe(ParameterTable& table, ClosingParams& p) {
             "joining can decide "
             "who is right");
   table.add("doubtful_step_phi", p.doubtful_step_phi, "rad", kPositive, "The same for the turn");
+  table.add(
+      "carried", p.carried,
+      "True where the robot may be carried or started anew within the log: three scans in a row that fit "
+      "nothing of what was seen before end the submap, and the next one may be anywhere. Where scans often "
+      "fit badly, as outdoors, the loop search then takes several times as long");
 }
 
 void describe(ParameterTable& table, DriftParams& p) {

@@ -24,6 +24,7 @@ struct ClosingParams {
   double max_sigma_phi = 0.2;      ///< rad
   double doubtful_step_xy = 0.3;   ///< m
   double doubtful_step_phi = 0.1;  ///< rad
+  bool carried = false;            ///< scans that fit nothing mean that the robot was carried
 };
 
 struct GridMapperParams {
