@@ -21,6 +21,7 @@ struct CompareOptions {
 /** Names of the folders, or where two have the same name their paths. */
 std::vector<std::string> namesOf(const std::vector<RunFolder>& runs, const std::vector<std::string>& paths) {
   std::vector<std::string> names;
+  names.reserve(runs.size());
   for (const auto& run : runs) names.push_back(run.name);
   return std::set<std::string>(names.begin(), names.end()).size() == names.size() ? names : paths;
 }

@@ -20,7 +20,7 @@ class Shades {
  public:
   Shades() {
     for (int i = 0; i < kSteps; ++i) {
-      const double log_odds = (i - kSteps / 2) / kPerUnit, p = 1 / (1 + std::exp(-log_odds));
+      const double log_odds = (i - kMiddle) / kPerUnit, p = 1 / (1 + std::exp(-log_odds));
       const double darkness = p * p * (3 - 2 * p);  // steeper in the middle: weak evidence shows too
       shade_[static_cast<std::size_t>(i)] = static_cast<uint8_t>(
           MapPicture::kFree + std::lround(darkness * (MapPicture::kOccupied - MapPicture::kFree)));
@@ -28,12 +28,12 @@ class Shades {
   }
 
   uint8_t of(double log_odds) const {
-    const double step = std::clamp(log_odds * kPerUnit + kSteps / 2, 0.0, kSteps - 1.0);
+    const double step = std::clamp(log_odds * kPerUnit + kMiddle, 0.0, kSteps - 1.0);
     return shade_[static_cast<std::size_t>(step)];
   }
 
  private:
-  static constexpr int kSteps = 512;
+  static constexpr int kSteps = 512, kMiddle = kSteps / 2;
   static constexpr double kPerUnit = 32;  // log-odds of -8 … 8
   std::array<uint8_t, kSteps> shade_{};
 };
@@ -153,7 +153,7 @@ MapPicture mapPicture(const mrpt::maps::COccupancyGridMap2D& map, const TPose2D&
       if (cx < 0 || cy < 0 || cx >= static_cast<int>(map.getSizeX()) ||
           cy >= static_cast<int>(map.getSizeY()))
         continue;
-      const int cell = map.getRow(cy)[cx];
+      const auto cell = static_cast<double>(map.getRow(cy)[cx]);
       if (cell != 0) *shade = shades.of(-cell / kCellsPerUnit);
     }
   return picture;
