@@ -48,7 +48,7 @@ AgreementMap::Block& AgreementMap::writableBlock(int bx, int by) {
 bool AgreementMap::isOccupiedWithin(int left, int right, int low, int high) const {
   for (int by = low >> kShift; by <= high >> kShift; ++by)
     for (int bx = left >> kShift; bx <= right >> kShift; ++bx) {
-      const int x0 = bx << kShift, y0 = by << kShift;
+      const int x0 = bx * kSide, y0 = by * kSide;  // shifting negative numbers would be undefined
       const uint64_t asked = rectangle(std::max(0, left - x0), std::min(kMask, right - x0),
                                        std::max(0, low - y0), std::min(kMask, high - y0));
       if ((blockAt(bx, by).occupied & asked) != 0) return true;
