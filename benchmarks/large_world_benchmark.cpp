@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -97,6 +98,9 @@ double seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+/** Of all threads. */
+double cpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
 /** Peak of this process, the making of the submaps included (MB). */
 double peakMemory() {
   const std::string key = "VmHWM:";
@@ -125,14 +129,16 @@ void joinAndReport(const GridSubmaps& submaps, const std::vector<TPose2D>& truth
   joiner.describe(table);
   table.set("grid_gauss_newton.max_cells=" + max_cells);
   const JoinedMap start = chainSubmaps(submaps);
-  const double begin = seconds();
+  const double begin = seconds(), cpu_begin = cpuSeconds();
   const JoinedMap joined = joiner.join(submaps, start, {});
-  const double after_join = seconds();
+  const double after_join = seconds(), cpu_after_join = cpuSeconds();
   const EvidenceGrid map = fuseEvidence(submaps, joined.frames, 0);
-  const double end = seconds();
+  const double end = seconds(), cpu_end = cpuSeconds();
   fmt::print("{} ({}), {} iterations\n", toString(joined.status), joined.reason, joined.iterations.size());
-  fmt::print("joined in {:.2f} s, map of {} x {} cells of {:.2f} m fused in {:.2f} s\n", after_join - begin,
-             map.sizeX(), map.sizeY(), map.resolution(), end - after_join);
+  fmt::print(
+      "joined in {:.2f} s ({:.2f} s of CPU), map of {} x {} cells of {:.2f} m fused in {:.2f} s ({:.2f})\n",
+      after_join - begin, cpu_after_join - cpu_begin, map.sizeX(), map.sizeY(), map.resolution(),
+      end - after_join, cpu_end - cpu_after_join);
   for (const auto& [name, map_joined] : {std::pair("start", start), std::pair("joined", joined)}) {
     const auto [mean, worst] = relativeErrors(map_joined, truth);
     fmt::print("{}: frames seen from the one before are off by {:.4f} m, at most {:.4f} m\n", name, mean,

@@ -12,7 +12,6 @@
 namespace submap_slam {
 namespace {
 
-using mrpt::maps::COccupancyGridMap2D;
 using mrpt::math::TPose2D;
 
 std::vector<PosePair> pairsOf(const TimedTrajectory& estimate, const TimedTrajectory& truth) {
@@ -43,8 +42,8 @@ std::vector<Frame> readFrames(const std::string& log, const ReaderParams& params
   return frames;
 }
 
-COccupancyGridMap2D mapFromPoses(const std::vector<Frame>& frames, const TimedTrajectory& trajectory,
-                                 const TPose2D& T_map_w, const GridMapperParams& params) {
+EvidenceGrid mapFromPoses(const std::vector<Frame>& frames, const TimedTrajectory& trajectory,
+                          const TPose2D& T_map_w, const GridMapperParams& params) {
   const double max_range = params.max_range > 0 ? params.max_range : std::numeric_limits<double>::max();
   std::vector<LaserPoints> scans;
   std::vector<TPose2D> poses;
@@ -55,7 +54,7 @@ COccupancyGridMap2D mapFromPoses(const std::vector<Frame>& frames, const TimedTr
     }
   std::vector<PlacedScan> placed;
   for (std::size_t i = 0; i < scans.size(); ++i) placed.push_back({&scans[i], poses[i]});
-  return renderEvidence(placed, params.evidence).toOccupancyGrid();
+  return renderEvidence(placed, params.evidence);
 }
 
 void addPoseScores(Metrics& scores, const TimedTrajectory& estimate, const TimedTrajectory& truth) {
@@ -77,7 +76,7 @@ void addPoseScores(Metrics& scores, const TimedTrajectory& estimate, const Timed
   scores["rpe_rmse_deg"] = relative.rotation_deg.rmse;
 }
 
-void addMapScores(Metrics& scores, const COccupancyGridMap2D& map, const TimedTrajectory& estimate,
+void addMapScores(Metrics& scores, const EvidenceGrid& map, const TimedTrajectory& estimate,
                   const TimedTrajectory& truth, const std::vector<Frame>& frames,
                   const GridMapperParams& params) {
   const PosePair first = pairsOf(estimate, truth).front();

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <mrpt/maps/COccupancyGridMap2D.h>
 #include <submap_slam/core/frame.h>
 #include <submap_slam/eval/timed_trajectory.h>
 #include <submap_slam/mapping/evidence_renderer.h>
@@ -17,10 +16,8 @@ std::vector<Frame> readFrames(const std::string& log, const ReaderParams& reader
 
 /** The map that scans make if each is taken where the trajectory says; frames without a pose are left out.
  * @param T_map_w where the trajectory's frame is in the map */
-mrpt::maps::COccupancyGridMap2D mapFromPoses(const std::vector<Frame>& frames,
-                                             const TimedTrajectory& trajectory,
-                                             const mrpt::math::TPose2D& T_map_w,
-                                             const GridMapperParams& params);
+EvidenceGrid mapFromPoses(const std::vector<Frame>& frames, const TimedTrajectory& trajectory,
+                          const mrpt::math::TPose2D& T_map_w, const GridMapperParams& params);
 
 /** Adds mae_m, mae_rad, rmse_m, rmse_rad and final_m, that of the last position (first pose aligned); ate_m
  * and ate_deg (RMSE after least squares alignment), ape_mean_m, ape_rmse_m and ape_std_m of the same errors;
@@ -30,9 +27,9 @@ void addPoseScores(Metrics& scores, const TimedTrajectory& estimate, const Timed
 
 /** Adds auc, precision, recall, accuracy and coverage of a map in the estimate's frame against the map from
  * the true poses, its first pose at the estimate's. */
-void addMapScores(Metrics& scores, const mrpt::maps::COccupancyGridMap2D& map,
-                  const TimedTrajectory& estimate, const TimedTrajectory& truth,
-                  const std::vector<Frame>& frames, const GridMapperParams& params);
+void addMapScores(Metrics& scores, const EvidenceGrid& map, const TimedTrajectory& estimate,
+                  const TimedTrajectory& truth, const std::vector<Frame>& frames,
+                  const GridMapperParams& params);
 
 /** Adds relations_m, relations_rmse_m, relations_std_m, relations_deg, local_relations_m and
  * local_relations_deg. */

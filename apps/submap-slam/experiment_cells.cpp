@@ -1,8 +1,6 @@
 #include "experiment_cells.h"
 
 #include <fmt/format.h>
-#include <mrpt/io/CFileGZInputStream.h>
-#include <mrpt/serialization/CArchive.h>
 #include <mrpt/system/os.h>
 #include <submap_slam/core/errors.h>
 #include <submap_slam/core/version.h>
@@ -115,18 +113,10 @@ std::string buildOf(const Cell& cell) {
 /** The poses and the map that are to be judged; a result of landmarks alone has no grid map. */
 struct Estimate {
   TimedTrajectory trajectory;
-  std::optional<mrpt::maps::COccupancyGridMap2D> map;
+  std::optional<EvidenceGrid> map;
 };
 
-mrpt::maps::COccupancyGridMap2D readGridMap(const std::string& file) {
-  mrpt::io::CFileGZInputStream in(file);
-  auto archive = mrpt::serialization::archiveFrom(in);
-  mrpt::maps::COccupancyGridMap2D map;
-  archive >> map;
-  return map;
-}
-
-Estimate runPipeline(const Cell& cell, const Configuration& config, const MapForms& forms, Metrics& figures) {
+Estimate runPipeline(const Cell& cell, const Configuration& config, Metrics& figures) {
   TerminalReporter reporter(true);
   const RunSummary summary = mapRawlog(cell.log, cell.folder.string(), true, config, reporter);
   if (summary.interrupted) throw Interrupted();
@@ -135,7 +125,7 @@ Estimate runPipeline(const Cell& cell, const Configuration& config, const MapFor
   if (iterations > 0) figures["iteration_s"] = figures["join_wall_s"].get<double>() / iterations;
   const OutputDirectory out(cell.folder, true);
   Estimate estimate{readTum(out.file("trajectory.tum")), {}};
-  if (forms.grids) estimate.map = readGridMap(out.file("map.gridmap.gz"));
+  if (summary.joined) estimate.map = summary.joined->map;
   return estimate;
 }
 
@@ -184,7 +174,7 @@ void runCell(const Cell& cell, int threads) {
   if (!pipeline || (forms.grids && !cell.truth.empty()))
     frames = readFrames(cell.log, readerParams(*config, forms));
   if (pipeline)
-    estimate = runPipeline(cell, *config, forms, figures);
+    estimate = runPipeline(cell, *config, figures);
   else
     estimate = runBaseline(cell, *config, frames);
   addScores(figures, cell, *config, estimate, frames, pipeline && forms.landmarks);

@@ -71,7 +71,7 @@ std::vector<const Parameter*> Session::parametersOf(std::size_t choice) const {
 void Session::join(std::size_t choice) {
   if (worker_.busy()) return;
   if (model_.submaps().empty()) throw ConfigError("there are no submaps to join");
-  JoinTask task{model_.submaps(), model_.edits(), joinersOf(choice), config_->joining.map_resolution, {}};
+  JoinTask task{model_.submaps(), model_.edits(), joinersOf(choice), mapMaker(*config_), {}};
   if (choice > 0) task.from = model_.joined();
   joined_submaps_ = maskSubmaps(task.submaps, task.edits);
   worker_.start(std::move(task));

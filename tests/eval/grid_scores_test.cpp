@@ -1,20 +1,23 @@
 #include <gtest/gtest.h>
 #include <submap_slam/eval/grid_scores.h>
 
+#include <cmath>
 #include <stdexcept>
 #include <vector>
 
 namespace submap_slam {
 namespace {
 
-using mrpt::maps::COccupancyGridMap2D;
-
 /** A row of cells of 0.1 m from x_min on, with the given probabilities of being occupied; 0.5 is unknown. */
-COccupancyGridMap2D row(double x_min, const std::vector<double>& occupied) {
+EvidenceGrid row(double x_min, const std::vector<double>& occupied) {
   const double x_max = x_min + 0.1 * static_cast<double>(occupied.size());
-  COccupancyGridMap2D grid(static_cast<float>(x_min), static_cast<float>(x_max), 0.0f, 0.1f, 0.1f);
-  for (std::size_t i = 0; i < occupied.size(); ++i)
-    if (occupied[i] != 0.5) grid.setCell(static_cast<int>(i), 0, static_cast<float>(1 - occupied[i]));
+  EvidenceGrid grid(x_min, x_max, 0, 0.1, 0.1);
+  for (std::size_t i = 0; i < occupied.size(); ++i) {
+    if (occupied[i] == 0.5) continue;
+    *grid.log_odds.cellByIndex(static_cast<unsigned>(i), 0) =
+        static_cast<float>(std::log(occupied[i] / (1 - occupied[i])));
+    *grid.hits.cellByIndex(static_cast<unsigned>(i), 0) = 1;
+  }
   return grid;
 }
 
@@ -30,6 +33,13 @@ TEST(GridScores, HandWorked) {
   EXPECT_NEAR(*scores.recall, 2.0 / 3, 1e-12);
   EXPECT_NEAR(*scores.accuracy, 4.0 / 6, 1e-12);
   EXPECT_EQ(scores.coverage, 1);
+}
+
+TEST(GridScores, TellApartWhatIsAsGoodAsCertain) {
+  // Log-odds of −30 and −60: an 8-bit grid would call them equal.
+  const double free = 1 / (1 + std::exp(30.0)), freer = 1 / (1 + std::exp(60.0));
+  EXPECT_EQ(*scoreGrid(row(0, {free, freer}), row(0, {0.9, 0.1})).auc, 1);
+  EXPECT_EQ(*scoreGrid(row(0, {freer, free}), row(0, {0.9, 0.1})).auc, 0);
 }
 
 TEST(GridScores, LeaveOutWhatEitherGridDoesNotKnow) {
@@ -59,7 +69,7 @@ TEST(GridScores, AreOpenWhereNothingCanBeSaid) {
 }
 
 TEST(GridScores, RefuseGridsOfDifferentResolution) {
-  COccupancyGridMap2D fine(0.0f, 0.4f, 0.0f, 0.1f, 0.05f);
+  const EvidenceGrid fine(0, 0.4, 0, 0.1, 0.05);
   EXPECT_THROW(scoreGrid(fine, row(0, {0.1, 0.9})), std::invalid_argument);
 }
 

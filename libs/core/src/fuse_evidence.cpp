@@ -1,4 +1,5 @@
 #include <submap_slam/core/joined_map.h>
+#include <submap_slam/core/map_resolution.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -235,27 +236,48 @@ EvidenceGrid assembled(const MapLattice& map, std::vector<FusedTile> tiles) {
   return whole;
 }
 
-}  // namespace
-
-EvidenceGrid fuseEvidence(const GridSubmaps& submaps, const std::vector<CPosePDFGaussian>& frames,
-                          double resolution) {
+/** The submaps that saw something. */
+std::vector<PlacedSubmap> placedSubmaps(const GridSubmaps& submaps,
+                                        const std::vector<CPosePDFGaussian>& frames) {
   if (submaps.size() != frames.size()) throw std::invalid_argument("one frame is needed for each submap");
-  Box box;
-  double finest = kInfinity;
   std::vector<PlacedSubmap> placed;
   for (std::size_t k = 0; k < submaps.size(); ++k) {
     const PlacedSubmap submap(*submaps[k], frames[k].mean.asTPose());
-    if (submap.empty()) continue;
+    if (!submap.empty()) placed.push_back(submap);
+  }
+  return placed;
+}
+
+Box boxOf(const std::vector<PlacedSubmap>& placed) {
+  Box box;
+  for (const PlacedSubmap& submap : placed) {
     box.extend({submap.box().x_min, submap.box().y_min});
     box.extend({submap.box().x_max, submap.box().y_max});
-    finest = std::min(finest, submap.resolution());
-    placed.push_back(submap);
   }
-  if (placed.empty()) return {};
+  return box;
+}
 
+double resolutionOf(const std::vector<PlacedSubmap>& placed, double wanted) {
+  if (wanted > 0 || placed.empty()) return wanted;
+  double finest = kInfinity;
+  for (const PlacedSubmap& submap : placed) finest = std::min(finest, submap.resolution());
+  const Box box = boxOf(placed);
   const double area = (box.x_max - box.x_min) * (box.y_max - box.y_min);
-  while (resolution <= 0 && area > kMostCells * finest * finest) finest *= 2;
-  const MapLattice map(box, resolution > 0 ? resolution : finest);
+  while (area > kMostCells * finest * finest) finest *= 2;
+  return finest;
+}
+
+}  // namespace
+
+double mapResolution(const GridSubmaps& submaps, const std::vector<CPosePDFGaussian>& frames, double wanted) {
+  return resolutionOf(placedSubmaps(submaps, frames), wanted);
+}
+
+EvidenceGrid fuseEvidence(const GridSubmaps& submaps, const std::vector<CPosePDFGaussian>& frames,
+                          double resolution) {
+  const std::vector<PlacedSubmap> placed = placedSubmaps(submaps, frames);
+  if (placed.empty()) return {};
+  const MapLattice map(boxOf(placed), resolutionOf(placed, resolution));
   std::vector<FusedTile> tiles;
   for (int row = 0; row < map.rows(); row += kTile)
     for (int column = 0; column < map.columns(); column += kTile)

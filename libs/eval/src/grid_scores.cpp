@@ -8,31 +8,33 @@
 namespace submap_slam {
 namespace {
 
-using mrpt::maps::COccupancyGridMap2D;
-
 /** A cell that both grids know. */
 struct Cell {
-  float free_probability;  ///< of the estimate
-  bool occupied;           ///< in the truth
+  float log_odds;  ///< of the estimate
+  bool occupied;   ///< in the truth
 };
 
-constexpr float kUnknown = 0.5f;
+/** Evidence of a cell; 0 if nothing is known of it. */
+float evidenceAt(const EvidenceGrid& grid, int x, int y) {
+  const bool inside =
+      x >= 0 && y >= 0 && x < static_cast<int>(grid.sizeX()) && y < static_cast<int>(grid.sizeY());
+  return inside ? *grid.log_odds.cellByIndex(static_cast<unsigned>(x), static_cast<unsigned>(y)) : 0.0f;
+}
 
 /** Cells by which the truth's origin lies right of or above the estimate's; both are at multiples of the
- * resolution, as MRPT rounds them. */
-int cellsBetween(float estimate_min, float truth_min, float resolution) {
+ * resolution. */
+int cellsBetween(double estimate_min, double truth_min, double resolution) {
   return static_cast<int>(std::lround((truth_min - estimate_min) / resolution));
 }
 
 /** Area under the ROC curve as the normalised Mann-Whitney statistic; sorts the cells. */
 double areaUnderCurve(std::vector<Cell>& cells, double occupied, double free) {
-  std::sort(cells.begin(), cells.end(),
-            [](const Cell& a, const Cell& b) { return a.free_probability < b.free_probability; });
+  std::sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) { return a.log_odds > b.log_odds; });
   double ordered_pairs = 0, free_after = free;
   for (std::size_t i = 0; i < cells.size();) {
     double tied_occupied = 0, tied_free = 0;
-    const float value = cells[i].free_probability;
-    for (; i < cells.size() && cells[i].free_probability == value; ++i)
+    const float value = cells[i].log_odds;
+    for (; i < cells.size() && cells[i].log_odds == value; ++i)
       (cells[i].occupied ? tied_occupied : tied_free) += 1;
     free_after -= tied_free;
     ordered_pairs += tied_occupied * (free_after + tied_free / 2);
@@ -45,7 +47,7 @@ struct Confusion {
   double true_occupied = 0, false_occupied = 0, true_free = 0, false_free = 0;
 
   void add(const Cell& cell) {
-    const bool called_occupied = cell.free_probability < kUnknown;
+    const bool called_occupied = cell.log_odds > 0;
     if (cell.occupied) {
       (called_occupied ? true_occupied : false_free) += 1;
     } else {
@@ -61,23 +63,23 @@ std::optional<double> share(double part, double rest) {
 
 }  // namespace
 
-GridScores scoreGrid(const COccupancyGridMap2D& estimate, const COccupancyGridMap2D& truth) {
-  const float resolution = truth.getResolution();
-  constexpr float kSameResolution = 1e-6f;
-  if (std::abs(estimate.getResolution() - resolution) > kSameResolution)
+GridScores scoreGrid(const EvidenceGrid& estimate, const EvidenceGrid& truth) {
+  const double resolution = truth.resolution();
+  constexpr double kSameResolution = 1e-6;
+  if (std::abs(estimate.resolution() - resolution) > kSameResolution)
     throw std::invalid_argument("scoreGrid: the grids differ in resolution");
-  const int shift_x = cellsBetween(estimate.getXMin(), truth.getXMin(), resolution);
-  const int shift_y = cellsBetween(estimate.getYMin(), truth.getYMin(), resolution);
+  const int shift_x = cellsBetween(estimate.hits.getXMin(), truth.hits.getXMin(), resolution);
+  const int shift_y = cellsBetween(estimate.hits.getYMin(), truth.hits.getYMin(), resolution);
 
   std::vector<Cell> cells;
   std::size_t known_truth = 0;
-  for (int y = 0; y < static_cast<int>(truth.getSizeY()); ++y)
-    for (int x = 0; x < static_cast<int>(truth.getSizeX()); ++x) {
-      const float wanted = truth.getCell(x, y);
-      if (wanted == kUnknown) continue;
+  for (int y = 0; y < static_cast<int>(truth.sizeY()); ++y)
+    for (int x = 0; x < static_cast<int>(truth.sizeX()); ++x) {
+      const float wanted = evidenceAt(truth, x, y);
+      if (wanted == 0) continue;
       ++known_truth;
-      const float found = estimate.getCell(x + shift_x, y + shift_y);  // 0.5 outside of the grid
-      if (found != kUnknown) cells.push_back({found, wanted < kUnknown});
+      const float found = evidenceAt(estimate, x + shift_x, y + shift_y);
+      if (found != 0) cells.push_back({found, wanted > 0});
     }
 
   Confusion confusion;

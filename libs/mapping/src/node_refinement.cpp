@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <utility>
+
+#include "kept_scans.h"
 
 namespace submap_slam {
 namespace {
@@ -21,12 +22,6 @@ struct KeyScan {
   LaserPoints points;
   TPose2D before, pose;  ///< T_w_n as joined, and refined so far
 };
-
-LaserPoints pointsOf(const SubmapScans& scans, const GridMapperParams& mapper) {
-  Frame frame;
-  frame.scans = scans;
-  return toLaserPoints(frame, mapper.max_range > 0 ? mapper.max_range : std::numeric_limits<double>::max());
-}
 
 std::vector<KeyScan> keyScansOf(const GridSubmaps& submaps, const JoinedMap& joined,
                                 const GridMapperParams& mapper) {

@@ -4,6 +4,7 @@
 #include <malloc.h>
 #include <submap_slam/core/doubtful_ends.h>
 #include <submap_slam/core/errors.h>
+#include <submap_slam/mapping/map_from_scans.h>
 #include <submap_slam/pipeline/stage_timer.h>
 
 #include <algorithm>
@@ -62,17 +63,26 @@ void run(const SubmapJoiner& joiner, IncrementalJoin& at_work, const GridSubmaps
 }
 
 /** Makes the map that a joiner left over. */
-void fuse(const GridSubmaps& submaps, double map_resolution, JoinOutcome& result) {
+void fuse(const GridSubmaps& submaps, const MapMaker& make_map, JoinOutcome& result) {
   const StageTimer timer;
   JoinedMap& joined = result.map;
-  if (joined.map.observedCells() == 0) joined.map = fuseEvidence(submaps, joined.frames, map_resolution);
+  if (joined.map.observedCells() == 0) joined.map = make_map(submaps, joined);
   result.stages.push_back(timer.record("fuse"));
 }
 
 }  // namespace
 
-Joining::Joining(JoinerChain joiners, double map_resolution)
-    : joiners_(std::move(joiners)), map_resolution_(map_resolution) {
+MapMaker mapMaker(const Configuration& config) {
+  return [from_scans = config.joining.map == "scans", resolution = config.joining.map_resolution,
+          mapper = config.mapper](const GridSubmaps& submaps, const JoinedMap& joined) {
+    if (from_scans)
+      if (auto map = mapFromScans(submaps, joined, mapper, resolution)) return std::move(*map);
+    return fuseEvidence(submaps, joined.frames, resolution);
+  };
+}
+
+Joining::Joining(JoinerChain joiners, MapMaker make_map)
+    : joiners_(std::move(joiners)), make_map_(std::move(make_map)) {
   begin();
 }
 
@@ -100,14 +110,14 @@ JoinOutcome Joining::goOn(const GridSubmaps& submaps, Reporter& reporter,
     run(*joiners_[k], *at_work_[k], submaps, result, reporter);
   if (const auto breaks = describeBreaks(submaps, result.map.constraints); !breaks.empty())
     reporter.warning(breaks);
-  fuse(submaps, map_resolution_, result);
+  fuse(submaps, make_map_, result);
   return result;
 }
 
 JoinOutcome Joining::joinAgain(const GridSubmaps& submaps, JoinedMap initial, Reporter& reporter) const {
   JoinOutcome result{std::move(initial), false, {}};
   if (!joiners_.empty()) run(*joiners_.back(), *joiners_.back()->incremental(), submaps, result, reporter);
-  fuse(submaps, map_resolution_, result);
+  fuse(submaps, make_map_, result);
   return result;
 }
 

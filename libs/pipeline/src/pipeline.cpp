@@ -105,8 +105,9 @@ FinishedMap joinAndWrite(const Run& run, const EditedSubmaps& submaps, Joining& 
   const auto progress = writeJoined(out, shown, joined, metrics);
   addTimedStage(metrics, "write", write_timer);
   Trajectory path = trajectoryOf(shown, joined);
-  return {std::move(path), [shown, progress, map = std::move(outcome.map)](const RunRecord& record) {
-            return runReport(shown, map, progress, record);
+  summary.joined = std::make_shared<const JoinedMap>(std::move(joined));
+  return {std::move(path), [shown, progress, map = summary.joined](const RunRecord& record) {
+            return runReport(shown, *map, progress, record);
           }};
 }
 
@@ -162,7 +163,7 @@ RunSummary mapRawlog(const std::string& log, const std::string& folder, bool ove
   RunSummary summary;
   const MapForms forms = mapForms(log, config);
   refuseEdits(edits, forms);
-  Joining joining(config.joinerChain(), config.joining.map_resolution);  // a wrong name is refused at once
+  Joining joining(config.joinerChain(), mapMaker(config));  // a wrong name is refused at once
   const auto landmark_joiner = forms.landmarks ? config.landmarkJoiner() : nullptr;
   StretchSource source(log, readerParams(config, forms),
                        StretchSplitter(stretchParams(config, forms), config.mapper),
@@ -228,7 +229,7 @@ RunSummary joinFile(const std::string& submap_file, const std::string& folder, b
                     const Configuration& config, Reporter& reporter, const Edits& edits) {
   const StageTimer timer;
   RunSummary summary;
-  Joining joining(config.joinerChain(), config.joining.map_resolution);
+  Joining joining(config.joinerChain(), mapMaker(config));
   requireSubmaps(submap_file);  // before a folder is made for nothing
   const OutputDirectory out(folder, overwrite);
   const auto store = makeStore(config, out);

@@ -68,7 +68,7 @@ void JoinWorker::run(const JoinTask& task) {
   const GridSubmaps shown = maskSubmaps(task.submaps, task.edits);
   const auto by_hand = constraintsOf(task.edits, task.submaps);
   Listener listener(*this);
-  Joining joining(task.joiners, task.map_resolution);
+  Joining joining(task.joiners, task.make_map);
   JoinOutcome outcome = task.from ? joining.joinAgain(shown, withEdits(*task.from, by_hand), listener)
                                   : joining.join(shown, listener, by_hand);
   const std::lock_guard lock(mutex_);

@@ -26,9 +26,10 @@ struct JoiningParams {
       "odometry_pose_graph, grid_gauss_newton";  ///< names of joiners, in the order in which they run
   bool incremental = false;                      ///< join while submaps are built
   double update_growth = 1.1;                    ///< then: submaps at an update / those at the one before
-  double map_resolution = 0;                     ///< m per cell of the global map; 0: that of the submaps
-  std::string landmark_joiner = "eif_tree";      ///< name of the joiner of landmark submaps
-  double memory = 200;                           ///< MB that the program may take while it joins, about
+  std::string map = "scans";  ///< what the global map is made from: "scans" (mapFromScans) or "submaps"
+  double map_resolution = 0;  ///< m per cell of the global map; 0: that of the submaps
+  std::string landmark_joiner = "eif_tree";  ///< name of the joiner of landmark submaps
+  double memory = 200;                       ///< MB that the program may take while it joins, about
 };
 
 /** Section [output]. */

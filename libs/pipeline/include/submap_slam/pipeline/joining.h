@@ -5,12 +5,19 @@
 #include <submap_slam/pipeline/configuration.h>
 #include <submap_slam/pipeline/reporter.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <submap_slam/pipeline/stage_timer.h>
 namespace submap_slam {
+
+/** Makes the global map of joined submaps. */
+using MapMaker = std::function<EvidenceGrid(const GridSubmaps&, const JoinedMap&)>;
+
+/** The one that [joining] map and map_resolution ask for; keeps a copy of what it needs. */
+MapMaker mapMaker(const Configuration& config);
 
 /** What joiners made of submaps. */
 struct JoinOutcome {
@@ -23,8 +30,8 @@ struct JoinOutcome {
  * need not find again what they know; the result is the same, to the bit. */
 class Joining {
  public:
-  /** @param map_resolution m per cell of the map; 0: that of the submaps */
-  Joining(JoinerChain joiners, double map_resolution);
+  /** @param make_map where no joiner made the map */
+  Joining(JoinerChain joiners, MapMaker make_map);
 
   /** Runs the joiners one after the other, from the chain of end poses, and makes the global map. Throws as
    * they do, and PluginError for results of the wrong form; the next call then begins anew.
@@ -44,7 +51,7 @@ class Joining {
 
   JoinerChain joiners_;
   std::vector<std::unique_ptr<IncrementalJoin>> at_work_;  // one for each joiner
-  double map_resolution_;
+  MapMaker make_map_;
 };
 
 }  // namespace submap_slam

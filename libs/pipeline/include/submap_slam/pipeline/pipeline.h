@@ -10,6 +10,7 @@
 #include <submap_slam/pipeline/reporter.h>
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ struct RunSummary {
   bool interrupted = false;        ///< a stop signal ended it early
   std::size_t submaps_in_map = 0;  ///< of the latest map that an incremental run wrote while it built submaps
   bool failed = false;             ///< landmark submaps could not be joined; what is written is not joined
+
+  /** The grid submaps as they were joined, with their map; null if there are none or the run was stopped. */
+  std::shared_ptr<const JoinedMap> joined;
 };
 
 /** Maps a rawlog: reads frames, cuts them into stretches, builds their submaps in the forms that [mapping]

@@ -17,8 +17,8 @@ namespace submap_slam {
 struct JoinTask {
   GridSubmaps submaps;
   Edits edits;
-  JoinerChain joiners;        ///< nobody changes their parameters while the worker is busy
-  double map_resolution = 0;  ///< m per cell of the map; 0: that of the submaps
+  JoinerChain joiners;  ///< nobody changes their parameters while the worker is busy
+  MapMaker make_map;    ///< where no joiner makes the map
 
   /** Where one joiner begins; empty: all joiners run, from the chain of end poses. */
   std::optional<JoinedMap> from;
