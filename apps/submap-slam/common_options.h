@@ -1,6 +1,7 @@
 #pragma once
 
 #include <submap_slam/pipeline/configuration.h>
+#include <submap_slam/pipeline/program_errors.h>
 #include <tbb/global_control.h>
 
 #include <CLI/CLI.hpp>
@@ -9,15 +10,6 @@
 #include <vector>
 
 namespace submap_slam {
-
-/** Exit codes of the program. */
-enum ExitCode : int {
-  kSuccess = 0,
-  kFailure = 1,       ///< could not do it: disk full, out of memory, …
-  kBadInput = 2,      ///< wrong option, configuration, plugin or file
-  kDamagedLog = 3,    ///< the log is damaged; results of the part before the damage are written
-  kInterrupted = 130  ///< Ctrl-C; what was complete is written
-};
 
 /** How a subcommand runs. */
 struct RunOptions {

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "parameter_variation.h"
+#include "experiment_columns.h"
+#include "experiment_plots.h"
+#include "experiment_settings.h"
 
 namespace submap_slam {
 
@@ -24,28 +26,6 @@ struct ExperimentData {
   std::vector<std::string> settings;    ///< "section.key=value", facts that all settings start from
 };
 
-/** Section [setting NAME]: how the data are mapped. */
-struct ExperimentSetting {
-  std::string name;
-  std::string baseline;               ///< empty: the pipeline of `map`; else whose poses are taken instead
-  std::vector<std::string> settings;  ///< "section.key=value"
-  ParameterVariation variation;       ///< on top of the settings, another one for each seed
-};
-
-/** A figure of a cell and how tables show it. */
-struct ExperimentColumn {
-  std::string key, label;
-  int decimals;
-};
-
-/** Section [plot NAME]: a figure over settings, data or seeds. */
-struct ExperimentPlot {
-  std::string name, title;
-  std::string x = "setting";  ///< setting, data or seed; each other combination is a series
-  ExperimentColumn y;
-  std::string kind = "bars";  ///< bars or lines
-};
-
 /** An experiment file. Each combination of data, setting and seed is one cell. */
 struct Experiment {
   std::string title;
@@ -56,9 +36,6 @@ struct Experiment {
   std::vector<ExperimentPlot> plots;  ///< as in the file; without any, one of each column
   bool worst = false;                 ///< tables show the greatest value over the seeds too
 };
-
-/** All columns there are. */
-const std::vector<ExperimentColumn>& experimentColumns();
 
 /** Reads an experiment file.
  * @param overrides   "experiment.key=value"

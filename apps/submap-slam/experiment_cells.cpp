@@ -257,7 +257,13 @@ CellResult readCell(const fs::path& folder) {
   for (const auto& [key, value] : result.items())
     if (value.is_number()) cell.figures[key] = value.get<double>();
   cell.build = result.value("build", "");
+  cell.mrpt = result.value("mrpt", "");
   return cell;
+}
+
+std::string CellResult::failure() const {
+  if (!figures.empty()) return "";
+  return error.empty() ? "not run" : error;
 }
 
 }  // namespace submap_slam

@@ -26,6 +26,10 @@ struct CellResult {
       figures;        ///< by the keys of experimentColumns(); what does not apply is missing
   std::string error;  ///< why there are none; empty also if the cell has not run
   std::string build;  ///< hash of the program that ran it
+  std::string mrpt;   ///< version of MRPT that it ran with
+
+  /** Why there are no figures; empty if there are. */
+  std::string failure() const;
 };
 
 /** Where the results of a cell are. */

@@ -3,12 +3,14 @@
 #include <submap_slam/output/output_directory.h>
 #include <submap_slam/output/replace_file.h>
 #include <submap_slam/output/text_file.h>
+#include <submap_slam/report/web_page.h>
 
 #include <filesystem>
 #include <memory>
 
 #include "commands.h"
 #include "experiment_cells.h"
+#include "experiment_page.h"
 #include "experiment_table.h"
 #include "terminal_reporter.h"
 
@@ -17,6 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kExperimentFile = "experiment.ini";
+constexpr const char* kPageFile = "experiment.html";
 
 struct ExperimentOptions {
   std::string file, data_folder;
@@ -27,18 +30,19 @@ struct ExperimentOptions {
 
 /** The folder, new or of an earlier run of an experiment, and the description in it, with which the table can
  * be made again. */
-void openExperimentFolder(const ExperimentOptions& options) {
+void openExperimentFolder(const ExperimentOptions& options, const std::string& description) {
   const fs::path& folder = options.run.folder;
   const fs::path record = folder / kExperimentFile;
   const OutputDirectory out(folder, fs::exists(record));
-  const std::string text = effectiveDescription(options.file, options.settings);
-  replaceFile(record.string(), [&](const std::string& file) { writeText(file, text); });
+  replaceFile(record.string(), [&](const std::string& file) { writeText(file, description); });
 }
 
-/** Tables of what is complete; returns how many cells are not. */
-std::size_t writeResults(const Experiment& experiment, const fs::path& folder) {
+/** Tables and page of what is complete; returns how many cells are not. */
+std::size_t writeResults(const Experiment& experiment, const fs::path& folder,
+                         const std::string& description) {
   const auto rows = readRows(experiment, folder);
   writeTables(experiment, rows, folder);
+  writeText((folder / kPageFile).string(), webPage(experimentPage(experiment, rows, description)));
   std::size_t missing = 0;
   for (const auto& row : rows) missing += row.cells.size() - row.complete();
   return missing;
@@ -52,10 +56,11 @@ int runExperiment(ExperimentOptions& options) {
     fmt::print("{}", listCells(experiment, options.run));
     return kSuccess;
   }
-  openExperimentFolder(options);
+  const std::string description = effectiveDescription(options.file, options.settings);
+  openExperimentFolder(options, description);
   TerminalReporter reporter(options.quiet);
   const bool finished = runCells(experiment, options.run, reporter);
-  const std::size_t missing = writeResults(experiment, folder);
+  const std::size_t missing = writeResults(experiment, folder, description);
   const std::string table = (folder / "table.md").string();
   if (!finished) {
     reporter.note(
@@ -66,7 +71,7 @@ int runExperiment(ExperimentOptions& options) {
     reporter.warning(fmt::format("{} cells failed; {} says why", missing, table));
     return kFailure;
   }
-  reporter.note("table: " + table);
+  reporter.note(fmt::format("table: {}, page with plots: {}", table, (folder / kPageFile).string()));
   return kSuccess;
 }
 
@@ -87,7 +92,7 @@ void addExperimentCommand(CLI::App& app, int& exit_code) {
       ->type_name("FILE.ini");
   command
       ->add_option("-o,--output", options->run.folder,
-                   "Folder for cells and table (default: name of the ini file without .ini)")
+                   "Folder for cells, tables and page (default: name of the ini file without .ini)")
       ->type_name("OUT");
   command
       ->add_option("--data", options->data_folder,

@@ -32,9 +32,8 @@ std::vector<ExperimentRow> readRows(const Experiment& experiment, const fs::path
       for (const uint64_t seed : experiment.seeds) {
         const CellResult cell = readCell(cellFolder(folder, data, setting, seed));
         row.cells.push_back(cell);
-        if (!cell.figures.empty()) continue;
-        row.note += fmt::format("{}seed {}: {}", row.note.empty() ? "" : "; ", seed,
-                                cell.error.empty() ? "not run" : cell.error);
+        if (!cell.failure().empty())
+          row.note += fmt::format("{}seed {}: {}", row.note.empty() ? "" : "; ", seed, cell.failure());
       }
       rows.push_back(std::move(row));
     }

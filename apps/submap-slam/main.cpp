@@ -1,11 +1,7 @@
 /** submap-slam: makes large, accurate 2D maps from MRPT rawlogs by building and joining submaps. */
-#include <fmt/format.h>
 #include <malloc.h>
-#include <submap_slam/core/errors.h>
 #include <submap_slam/core/version.h>
-#include <submap_slam/pipeline/printable.h>
-
-#include <cstdio>
+#include <submap_slam/pipeline/program_errors.h>
 
 #include "commands.h"
 #include "stop_signal.h"
@@ -14,13 +10,15 @@ namespace {
 
 using namespace submap_slam;
 
+constexpr const char* kProgram = "submap-slam";
+
 /** Parses the command line and does what it says. */
 int run(CLI::App& app, int argc, char** argv) {
   int exit_code = kSuccess;
   bool list_joiners = false;
   ConfigurationOptions options;
 
-  app.set_version_flag("--version", std::string("submap-slam ") + version());
+  app.set_version_flag("--version", std::string(kProgram) + " " + version());
   app.add_flag("--list-joiners", list_joiners, "List the joiners that the plugins offer");
   addPluginOption(app, options);
   app.require_subcommand(0, 1);
@@ -49,31 +47,17 @@ int run(CLI::App& app, int argc, char** argv) {
   return exit_code;
 }
 
-int reportError(const std::string& text, int exit_code) {
-  fmt::print(stderr, "submap-slam: error: {}\n", printable(text));
-  return exit_code;
-}
-
 /** Every error ends in one line on stderr and an exit code. */
 int runReportingErrors(int argc, char** argv) {
-  CLI::App app("Makes large, accurate 2D maps from MRPT rawlogs by building and joining submaps.",
-               "submap-slam");
+  CLI::App app("Makes large, accurate 2D maps from MRPT rawlogs by building and joining submaps.", kProgram);
   try {
     return run(app, argc, argv);
   } catch (const CLI::Success& e) {  // --help, --version
     return app.exit(e);
   } catch (const CLI::ParseError& e) {
-    return reportError(e.what(), kBadInput);
-  } catch (const InputError& e) {
-    return reportError(e.what(), kBadInput);
-  } catch (const ConfigError& e) {
-    return reportError(e.what(), kBadInput);
-  } catch (const PluginError& e) {
-    return reportError(e.what(), kBadInput);
-  } catch (const Interrupted& e) {
-    return reportError(e.what(), kInterrupted);
-  } catch (const std::exception& e) {
-    return reportError(e.what(), kFailure);
+    return reportError(kProgram, e.what(), kBadInput);
+  } catch (...) {
+    return reportCaughtError(kProgram);
   }
 }
 

@@ -1,11 +1,8 @@
 /** submap-viewer: shows rawlogs, submaps and joined maps, and joins while one looks on. */
-#include <fmt/format.h>
-#include <submap_slam/core/errors.h>
 #include <submap_slam/core/version.h>
-#include <submap_slam/pipeline/printable.h>
+#include <submap_slam/pipeline/program_errors.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 
 #include "still_picture.h"
 #include "viewer_window.h"
@@ -14,8 +11,10 @@ namespace {
 
 using namespace submap_slam;
 
+constexpr const char* kProgram = "submap-viewer";
+
 void addOptions(CLI::App& app, ViewerOptions& options) {
-  app.set_version_flag("--version", std::string("submap-viewer ") + version());
+  app.set_version_flag("--version", std::string(kProgram) + " " + version());
   app.add_option("source", options.source, "Rawlog, file of submaps, or folder of a run")
       ->type_name("FILE|OUT");
   app.add_option("--follow", options.follow, "Show the run in a folder while it goes on")->type_name("OUT");
@@ -52,32 +51,19 @@ int run(CLI::App& app, int argc, char** argv) {
   } else {
     showWindow(options);
   }
-  return 0;
-}
-
-int reportError(const std::string& text, int exit_code) {
-  fmt::print(stderr, "submap-viewer: error: {}\n", printable(text));
-  return exit_code;
+  return kSuccess;
 }
 
 int runReportingErrors(int argc, char** argv) {
-  constexpr int kFailure = 1, kBadInput = 2;
-  CLI::App app("Shows rawlogs, submaps and joined maps, and joins submaps while you look on.",
-               "submap-viewer");
+  CLI::App app("Shows rawlogs, submaps and joined maps, and joins submaps while you look on.", kProgram);
   try {
     return run(app, argc, argv);
   } catch (const CLI::Success& e) {  // --help, --version
     return app.exit(e);
   } catch (const CLI::ParseError& e) {
-    return reportError(e.what(), kBadInput);
-  } catch (const InputError& e) {
-    return reportError(e.what(), kBadInput);
-  } catch (const ConfigError& e) {
-    return reportError(e.what(), kBadInput);
-  } catch (const PluginError& e) {
-    return reportError(e.what(), kBadInput);
-  } catch (const std::exception& e) {
-    return reportError(e.what(), kFailure);
+    return reportError(kProgram, e.what(), kBadInput);
+  } catch (...) {
+    return reportCaughtError(kProgram);
   }
 }
 
@@ -87,6 +73,6 @@ int main(int argc, char** argv) {
   try {
     return runReportingErrors(argc, argv);
   } catch (...) {  // stderr itself is gone, or memory is
-    return 1;
+    return kFailure;
   }
 }

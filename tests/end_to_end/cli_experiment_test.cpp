@@ -1,6 +1,7 @@
 /** `experiment` fills its table whatever happens to single cells, and does nothing twice. */
 #include <cmath>
 #include <csignal>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
 
@@ -9,6 +10,7 @@
 namespace submap_slam::testing {
 namespace {
 
+using Json = nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::Not;
 namespace fs = std::filesystem;
@@ -33,6 +35,13 @@ class ExperimentTest : public CliTest {
   }
 
   std::string table() const { return contentOf(path("out/table.md")); }
+
+  /** The data in the page. */
+  Json pageData() const {
+    const std::string page = contentOf(path("out/experiment.html")), begin = "id=\"data\">";
+    const std::size_t from = page.find(begin) + begin.size();
+    return Json::parse(page.substr(from, page.find("</script>", from) - from));
+  }
 };
 
 TEST_F(ExperimentTest, HelpHasAnExample) {
@@ -116,6 +125,52 @@ TEST_F(ExperimentTest, FailedCellsShowTheirErrorAndTheRestCompletes) {
   EXPECT_THAT(table(), HasSubstr("\n| hall | deaf | 0 | – | – | – | failed: seed 1: "));
   EXPECT_THAT(table(), HasSubstr("SONAR"));
   EXPECT_THAT(contentOf(path("out/table.csv")), HasSubstr("hall,deaf,0,,,,,,,\"seed 1: "));
+}
+
+TEST_F(ExperimentTest, PageHasTablePlotsAndWhatFailed) {
+  const std::string plots = "[plot errors]\ny = mae_m\nx = seed\n[plot maps]\ny = auc\nx = data\n";
+  const std::string file =
+      experiment("odometry, deaf", "[setting deaf]\nreader.sensor_labels = SONAR\n" + plots);
+  run({"experiment", file, "-o", path("out"), "-q"});
+  const Json page = pageData();
+  EXPECT_EQ(page["kind"], "experiment");
+  EXPECT_EQ(page["title"], "A test");
+  EXPECT_EQ(page["seeds"], Json({"1", "2"}));
+  EXPECT_EQ(page["description"], contentOf(path("out/experiment.ini")));
+
+  ASSERT_EQ(page["cells"].size(), 4u);
+  const Json &heard = page["cells"][1], &deaf = page["cells"][2];
+  EXPECT_EQ(heard["seed"], "2");
+  EXPECT_EQ(heard["error"], "");
+  EXPECT_THAT(heard["build"].get<std::string>(), ::testing::SizeIs(16));
+  EXPECT_THAT(heard["mrpt"].get<std::string>(), HasSubstr("MRPT"));
+  EXPECT_THAT(deaf["error"].get<std::string>(), HasSubstr("SONAR"));
+  EXPECT_EQ(deaf["values"], Json({nullptr, nullptr, nullptr}));
+
+  const double first = page["cells"][0]["values"][0], second = heard["values"][0];
+  EXPECT_NEAR(page["rows"][0]["values"][0]["mean"], (first + second) / 2, 1e-12);
+  EXPECT_TRUE(page["rows"][1]["values"][0].is_null());
+
+  ASSERT_EQ(page["plots"].size(), 2u);
+  const Json &errors = page["plots"][0], &maps = page["plots"][1];
+  EXPECT_EQ(errors["places"], Json({"1", "2"}));
+  EXPECT_EQ(errors["series"][0]["label"], "hall, odometry");
+  EXPECT_EQ(errors["series"][0]["points"][1]["mean"], second);
+  EXPECT_TRUE(errors["series"][1]["points"][1].is_null());
+  EXPECT_EQ(maps["places"], Json({"hall"}));
+  EXPECT_EQ(maps["series"][1]["label"], "deaf");
+  EXPECT_EQ(maps["series"][0]["points"][0], page["rows"][0]["values"][1]);
+}
+
+TEST_F(ExperimentTest, PlotsEachColumnOverTheSettingsUnlessToldOtherwise) {
+  succeed({"experiment", experiment("chain, odometry"), "-o", path("out"), "-q"});
+  const Json plots = pageData()["plots"];
+  ASSERT_EQ(plots.size(), 3u);
+  EXPECT_EQ(plots[1]["title"], "AUC");
+  EXPECT_EQ(plots[1]["kind"], "bars");
+  EXPECT_EQ(plots[1]["places"], Json({"chain", "odometry"}));
+  EXPECT_EQ(plots[1]["series"].size(), 1u);
+  EXPECT_EQ(plots[1]["series"][0]["points"].size(), 2u);
 }
 
 TEST_F(ExperimentTest, VariesSettingsAnewForEachSeed) {

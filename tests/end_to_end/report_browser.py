@@ -52,9 +52,9 @@ def browser(size, dark=False):
         driver.quit()
 
 
-def open_page(driver, file):
+def open_page(driver, file, drawn=".map canvas"):
     driver.get(f"file://{file}")
-    wait_until(lambda: driver.find_elements(By.CSS_SELECTOR, ".map canvas"), "the map is drawn")
+    wait_until(lambda: driver.find_elements(By.CSS_SELECTOR, drawn), f"{drawn} is there")
 
 
 def expect_quiet(driver):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""report.html and compare.html as a reader sees them: report_test.py PROGRAM SOURCE_DIR WORK_DIR"""
+"""report.html, compare.html and experiment.html as a reader sees them: report_test.py PROGRAM SOURCE_DIR WORK_DIR"""
 import json
 import math
 import os
@@ -16,6 +16,7 @@ from report_browser import (DESKTOP, PHONE, Failure, browser, expect, expect_no_
 RUN_PANELS = ("map", "constraints", "objective", "uncertainty", "scores", "growth", "stages", "metrics", "settings",
               "messages")
 LANDMARK_PANELS = ("map", "objective", "uncertainty", "associations", "stages", "metrics", "settings", "messages")
+EXPERIMENT_PANELS = ("failed", "table", "plot-errors", "plot-seeds", "plot-missing", "cells", "made")
 COMPARISON_PANELS = ("map", "differences", "table-1", "table-2", "table-3", "table-4")
 
 
@@ -140,6 +141,88 @@ def check_comparison(file, folder):
         expect_quiet(driver)
 
 
+EXPERIMENT = """[experiment]
+title = </script><b>Sight and hearing
+data = hall
+settings = odometry, chain, deaf
+seeds = 1, 18446744073709551615
+columns = mae_m, submaps
+[data hall]
+world = non_convex
+simulation.beams = 90
+simulation.max_scans = 40
+[setting odometry]
+baseline = odometry
+[setting chain]
+joining.chain =
+[setting deaf]
+reader.sensor_labels = SONAR
+[plot errors]
+title = Error of the poses
+y = mae_m
+[plot seeds]
+x = seed
+y = mae_m
+kind = lines
+[plot missing]
+y = gps_rmse_m
+"""
+
+
+def check_experiment(file, folder):
+    """Tables, plots, errors of failed cells, and how all was made."""
+    with browser(DESKTOP) as driver:
+        open_page(driver, file, ".chart canvas")
+        expect_panels(driver, EXPERIMENT_PANELS)
+        title = driver.find_element(By.TAG_NAME, "h1").text
+        expect(title == "</script><b>Sight and hearing", f"the title is {title}")
+        check_experiment_tables(driver)
+        check_bars(driver)
+        take_picture(driver, os.path.join(folder, "experiment.png"))
+        expect_quiet(driver)
+    with browser(PHONE, dark=True) as driver:
+        open_page(driver, file, ".chart canvas")
+        expect_no_overflow(driver)
+        expect_panels(driver, EXPERIMENT_PANELS)
+        take_picture(driver, os.path.join(folder, "experiment_phone.png"))
+        expect_quiet(driver)
+
+
+def check_experiment_tables(driver):
+    results, cells = rows(driver, "table"), rows(driver, "cells")
+    expect(len(results) == 3 and len(cells) == 6, f"{len(results)} rows and {len(cells)} cells")
+    expect("±" in results[1].text and "±" not in results[2].text, f"means are wrong: {[r.text for r in results]}")
+    expect(cells[1].text.split()[2] == "18446744073709551615", f"the seed is rounded: {cells[1].text}")
+    expect("SONAR" in cells[4].text and "SONAR" not in cells[2].text, "errors are not with their cells")
+    failures = driver.find_elements(By.CSS_SELECTOR, "#failed li")
+    expect(len(failures) == 2 and "hall, deaf, seed 1: " in failures[0].text, "failures are not listed")
+    driver.find_element(By.CSS_SELECTOR, "#table th:nth-child(4) button").click()
+    first = rows(driver, "table")[0].text
+    expect("odometry" in first, f"sorting by the error puts {first} first")
+    made = driver.find_element(By.ID, "made").text
+    for text in ("submap-slam", "build", "MRPT", "[setting deaf]", "18446744073709551615"):
+        expect(text in made, f"'{text}' is not in how it was made")
+
+
+def check_bars(driver):
+    """Where odometry has its bar there is colour, where the deaf setting would have one there is none."""
+    shares = driver.execute_script("""
+      const canvas = document.querySelector('#plot-errors canvas'), box = document.querySelector('#plot-errors .u-over');
+      const scale = canvas.width / canvas.getBoundingClientRect().width, at = box.getBoundingClientRect();
+      const left = (at.x - canvas.getBoundingClientRect().x) * scale, top = (at.y - canvas.getBoundingClientRect().y) * scale;
+      const copy = Object.assign(document.createElement('canvas'), {width: canvas.width, height: canvas.height})
+        .getContext('2d', {willReadFrequently: true});
+      copy.drawImage(canvas, 0, 0);
+      return [0, 1, 2].map((place) => {
+        const width = at.width * scale / 3, seen = copy.getImageData(
+          left + (place + 0.3) * width, top, 0.4 * width, at.height * scale).data;
+        let coloured = 0;
+        for (let i = 0; i < seen.length; i += 4) if (seen[i + 3] > 0 && seen[i + 2] - seen[i] > 60) ++coloured;
+        return coloured / (seen.length / 4);
+      });""")
+    expect(shares[0] > shares[1] > 0 and shares[0] > 0.3 and shares[2] == 0, f"bars fill {shares} of their places")
+
+
 def main():
     program, source, work = sys.argv[1:]
     shutil.rmtree(work, ignore_errors=True)
@@ -163,6 +246,12 @@ def main():
     check_landmark_report(path("landmarks/report.html"), work)
     run("compare", path("room"), path("hostile"), "-o", path("comparison"))
     check_comparison(path("comparison/compare.html"), work)
+    with open(path("experiment.ini"), "w", encoding="utf-8") as text:
+        text.write(EXPERIMENT)
+    status = subprocess.run([program, "experiment", path("experiment.ini"), "-o", path("experiment"), "--quiet"],
+                            stderr=subprocess.DEVNULL, timeout=240).returncode
+    expect(status == 1, f"an experiment with failed cells ends with {status}")
+    check_experiment(path("experiment/experiment.html"), work)
     print(json.dumps({"pictures": work}))
 
 

@@ -6,13 +6,12 @@
 #include <optional>
 #include <utility>
 
+#include "report_parts.h"
+
 namespace submap_slam {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using mrpt::math::TPose2D;
-
-double degrees(double radians) { return radians * 180 / M_PI; }
 
 /** Rows in the order in which their names first appear in any run. */
 class RowCollector {

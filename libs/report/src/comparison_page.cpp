@@ -10,9 +10,6 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 
-/** Of very long logs every n-th pose is enough for a picture. */
-constexpr std::size_t kMostPoses = 20000;
-
 double toMilliseconds(double seconds) { return std::round(seconds * 1e3) / 1e3; }
 
 /** The path in the frame of the reference. */

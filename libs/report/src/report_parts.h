@@ -6,6 +6,7 @@
 #include <submap_slam/core/packed_evidence.h>
 #include <submap_slam/report/map_picture.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -16,6 +17,8 @@ using Json = nlohmann::ordered_json;
 /** Rounded so that numbers take few characters. */
 double roundedM(double metres);
 double roundedRad(double radians);
+
+inline double degrees(double radians) { return radians * 180 / M_PI; }
 
 /** Standard deviations along the principal axes of a covariance of two coordinates. */
 struct SigmaEllipse {
@@ -35,6 +38,9 @@ Json outlineJson(const PackedEvidence& evidence, const mrpt::math::TPose2D& T_w_
 
 /** Members png (data URI), x_min, x_max, y_min, y_max. */
 Json pictureJson(const MapPicture& picture);
+
+/** Of very long logs every n-th pose is enough for a picture. */
+constexpr std::size_t kMostPoses = 20000;
 
 /** Longest side of a map picture (px). */
 constexpr int kMaxPictureSide = 4096;

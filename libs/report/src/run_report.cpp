@@ -17,8 +17,6 @@ namespace {
 using mrpt::poses::CPose2D;
 using mrpt::poses::CPosePDFGaussian;
 
-double degrees(double radians) { return radians * 180 / M_PI; }
-
 /** Columns of a trajectory: seconds since the first pose, position (m), standard deviation of the position
  * along its worst direction (m), and index of the submap. */
 class TrajectoryColumns {
@@ -53,9 +51,6 @@ double nodeSigma(const CPosePDFGaussian& frame, const mrpt::math::TPose2D& T_w_n
   const Eigen::Matrix2d cov = J * frame.cov.asEigen() * J.transpose();
   return sigmaEllipse(cov(0, 0), cov(0, 1), cov(1, 1)).major;
 }
-
-/** Of very long logs every n-th pose is enough for a picture. */
-constexpr std::size_t kMostPoses = 25000;
 
 Json gridTrajectory(const GridSubmaps& submaps, const JoinedMap& joined) {
   const Trajectory trajectory = trajectoryOf(submaps, joined);

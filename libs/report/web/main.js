@@ -2,4 +2,4 @@
 
 const data = JSON.parse(document.getElementById('data').textContent);
 document.getElementById('made-by').textContent = 'Made by submap-slam. This page is complete in itself and fetches nothing. In charts, drag to zoom and double-click to go back.';
-({ run: showRun, comparison: showComparison })[data.kind](data);
+({ run: showRun, comparison: showComparison, experiment: showExperiment })[data.kind](data);

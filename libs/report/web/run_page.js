@@ -28,7 +28,7 @@ function constraintColumns(submaps) {
       constraintKind(c) + (c.by_hand ? ' (by hand)' : '')) },
     { title: 'left over', key: 'left_m', hint: 'Distance between what the constraint says and the joined frames', show: (c) => metres(c.left_m) },
     { title: 'angle', key: 'left_deg', show: (c) => `${fixed(c.left_deg, 2)}°` },
-    { title: 'in σ', key: 'left_sigma', hint: 'The same in standard deviations of the constraint', show: (c) => fixed(c.left_sigma, 1) },
+    { title: 'in σ', key: 'left_sigma', hint: 'The same in standard deviations of the constraint', show: (c) => fixed(c.left_sigma, c.left_sigma < 100 ? 1 : 0) },
     { title: 'reason', key: 'reason', kind: 'text' },
   ];
 }
@@ -41,7 +41,7 @@ function addConstraints(data, map) {
   const loops = data.constraints.some((c) => constraintKind(c) !== 'chain');
   const kinds = { accepted: true, rejected: true, chain: !loops };
   const table = new DataTable(constraintColumns(data.submaps), data.constraints, {
-    narrow: '2.8rem 2.4rem 4.8rem 1fr 1fr 2.6rem',
+    narrow: '2.7rem 2.2rem 4.7rem 1fr 1fr 3rem',
     onRow: (c, clicked) => { map.highlight([c.from, c.to], clicked); table.choose(c, false); },
   });
   const refresh = () => table.filter((c) => kinds[constraintKind(c)]);

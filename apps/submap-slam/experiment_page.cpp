@@ -1,0 +1,121 @@
+#include "experiment_page.h"
+
+#include <fmt/format.h>
+#include <submap_slam/core/version.h>
+
+namespace submap_slam {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/** Mean, deviation and greatest value over the seeds; null if no cell has the figure. */
+Json statisticsJson(const ExperimentRow& row, const std::string& key) {
+  const ErrorStatistics s = row.statistics(key);
+  if (s.count == 0) return nullptr;
+  return {{"count", s.count}, {"mean", s.mean}, {"std", s.std}, {"max", s.max}};
+}
+
+Json figureJson(const CellResult& cell, const std::string& key) {
+  const auto figure = cell.figures.find(key);
+  return figure == cell.figures.end() ? Json() : Json(figure->second);
+}
+
+Json columnJson(const ExperimentColumn& column) {
+  return {{"key", column.key}, {"label", column.label}, {"decimals", column.decimals}};
+}
+
+Json rowJson(const Experiment& experiment, const ExperimentRow& row) {
+  Json json{
+      {"data", row.data}, {"setting", row.setting}, {"runs", row.complete()}, {"values", Json::array()}};
+  for (const auto& column : experiment.columns) json["values"].push_back(statisticsJson(row, column.key));
+  return json;
+}
+
+Json cellsJson(const Experiment& experiment, const std::vector<ExperimentRow>& rows) {
+  Json cells = Json::array();
+  for (const ExperimentRow& row : rows)
+    for (std::size_t i = 0; i < row.cells.size(); ++i) {
+      const CellResult& cell = row.cells[i];
+      Json json{
+          {"data", row.data},        {"setting", row.setting}, {"seed", std::to_string(experiment.seeds[i])},
+          {"error", cell.failure()}, {"build", cell.build},    {"mrpt", cell.mrpt},
+          {"values", Json::array()}};
+      for (const auto& column : experiment.columns) json["values"].push_back(figureJson(cell, column.key));
+      cells.push_back(json);
+    }
+  return cells;
+}
+
+template <class Named>
+Json namesOf(const std::vector<Named>& all) {
+  Json names = Json::array();
+  for (const Named& one : all) names.push_back(one.name);
+  return names;
+}
+
+Json seedsOf(const Experiment& experiment) {
+  Json seeds = Json::array();
+  for (const uint64_t seed : experiment.seeds) seeds.push_back(std::to_string(seed));
+  return seeds;
+}
+
+/** Over the seeds, a series for each row. */
+Json seriesOverSeeds(const ExperimentPlot& plot, const std::vector<ExperimentRow>& rows) {
+  Json series = Json::array();
+  for (const ExperimentRow& row : rows) {
+    Json points = Json::array();
+    for (const CellResult& cell : row.cells) {
+      const Json value = figureJson(cell, plot.y.key);
+      points.push_back(value.is_null() ? value : Json{{"mean", value}, {"std", 0}});
+    }
+    series.push_back({{"label", fmt::format("{}, {}", row.data, row.setting)}, {"points", points}});
+  }
+  return series;
+}
+
+/** Means over the seeds, a series for each of the others. Rows go by data, then settings. */
+Json seriesOfMeans(const Experiment& experiment, const ExperimentPlot& plot,
+                   const std::vector<ExperimentRow>& rows) {
+  const std::size_t settings = experiment.settings.size();
+  const bool over_data = plot.x == "data";
+  const Json names = over_data ? namesOf(experiment.settings) : namesOf(experiment.data);
+  Json series = Json::array();
+  for (const Json& name : names) series.push_back({{"label", name}, {"points", Json::array()}});
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    series[over_data ? r % settings : r / settings]["points"].push_back(statisticsJson(rows[r], plot.y.key));
+  return series;
+}
+
+Json plotJson(const Experiment& experiment, const ExperimentPlot& plot,
+              const std::vector<ExperimentRow>& rows) {
+  Json json{{"name", plot.name}, {"title", plot.title}, {"kind", plot.kind}, {"x", plot.x}};
+  json["y"] = columnJson(plot.y);
+  if (plot.x == "seed") {
+    json["places"] = seedsOf(experiment);
+    json["series"] = seriesOverSeeds(plot, rows);
+  } else {
+    json["places"] = plot.x == "data" ? namesOf(experiment.data) : namesOf(experiment.settings);
+    json["series"] = seriesOfMeans(experiment, plot, rows);
+  }
+  return json;
+}
+
+}  // namespace
+
+Json experimentPage(const Experiment& experiment, const std::vector<ExperimentRow>& rows,
+                    const std::string& description) {
+  Json data{{"kind", "experiment"}, {"title", experiment.title}, {"version", version()}};
+  data["worst"] = experiment.worst;
+  data["seeds"] = seedsOf(experiment);
+  data["columns"] = Json::array();
+  for (const auto& column : experiment.columns) data["columns"].push_back(columnJson(column));
+  data["rows"] = Json::array();
+  for (const auto& row : rows) data["rows"].push_back(rowJson(experiment, row));
+  data["plots"] = Json::array();
+  for (const auto& plot : experiment.plots) data["plots"].push_back(plotJson(experiment, plot, rows));
+  data["cells"] = cellsJson(experiment, rows);
+  data["description"] = description;
+  return data;
+}
+
+}  // namespace submap_slam
