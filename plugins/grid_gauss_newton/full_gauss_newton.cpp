@@ -11,7 +11,7 @@ namespace {
 using SparseMatrix = Eigen::SparseMatrix<double>;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-struct Row {
+struct Observation {
   std::size_t submap;
   std::size_t cell;
   EvidenceSample value;
@@ -39,9 +39,9 @@ Bounds boundsOf(const std::vector<PlacedLevel>& placed) {
 }
 
 /** One observation for each submap and lattice point where it has evidence. */
-std::vector<Row> observationsOf(const std::vector<PlacedLevel>& placed, std::size_t& cells) {
+std::vector<Observation> observationsOf(const std::vector<PlacedLevel>& placed, std::size_t& cells) {
   const Bounds all = boundsOf(placed);
-  std::vector<Row> rows;
+  std::vector<Observation> rows;
   cells = 0;
   for (int b = all.b_min; b < all.b_max; ++b)
     for (int a = all.a_min; a < all.a_max; ++a) {
@@ -59,9 +59,9 @@ std::vector<Row> observationsOf(const std::vector<PlacedLevel>& placed, std::siz
 
 /** Σ over the rows of each cell of a function of the row. */
 template <class Function>
-std::vector<double> sumPerCell(const std::vector<Row>& rows, std::size_t cells, Function value) {
+std::vector<double> sumPerCell(const std::vector<Observation>& rows, std::size_t cells, Function value) {
   std::vector<double> sums(cells, 0);
-  for (const Row& row : rows) sums[row.cell] += value(row.value);
+  for (const Observation& row : rows) sums[row.cell] += value(row.value);
   return sums;
 }
 
@@ -131,7 +131,8 @@ std::optional<Eigen::VectorXd> choleskySolve(const SparseMatrix& matrix, const E
 ExplicitProblem writeOut(const EvidenceLevels& level, const Frames& frames, JacobianKind jacobian,
                          double lattice_angle) {
   std::size_t cells = 0;
-  const std::vector<Row> rows = observationsOf(PlacedLevels(level, frames, lattice_angle).submaps, cells);
+  const std::vector<Observation> rows =
+      observationsOf(PlacedLevels(level, frames, lattice_angle).submaps, cells);
   const auto n = sumPerCell(rows, cells, [](const EvidenceSample& s) { return s.hits; });
   const auto ww = sumPerCell(rows, cells, [](const EvidenceSample& s) { return s.hits * s.hits; });
   const auto wl = sumPerCell(rows, cells, [](const EvidenceSample& s) { return s.hits * s.log_odds; });
@@ -141,7 +142,7 @@ ExplicitProblem writeOut(const EvidenceLevels& level, const Frames& frames, Jaco
   problem.values.resize(count);
   Triplets pose_entries, map_entries;
   for (Eigen::Index k = 0; k < count; ++k) {
-    const Row& row = rows[static_cast<std::size_t>(k)];
+    const Observation& row = rows[static_cast<std::size_t>(k)];
     problem.values[k] = row.value.log_odds;
     map_entries.emplace_back(k, row.cell, row.value.hits / n[row.cell]);
     const auto gradient = effectiveGradient(jacobian, row.value, wl[row.cell] / ww[row.cell]);

@@ -13,17 +13,15 @@
 #include <map>
 #include <memory>
 #include <sstream>
-#include <string_view>
 #include <tuple>
+
+#include "text.h"
 
 namespace submap_slam {
 namespace {
 
 using Kind = Edit::Kind;
 using Words = std::vector<std::string>;
-
-/** What some editors put in front of UTF-8. */
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 /** Of a constraint that comes without: as well as one can read it off a map. */
 constexpr double kUsualSigma_m = 0.05, kUsualSigma_rad = 0.01;

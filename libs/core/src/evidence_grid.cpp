@@ -5,13 +5,12 @@
 #include <stdexcept>
 #include <vector>
 
+#include "grid_limits.h"
+
 namespace submap_slam {
 namespace {
 
 using Grid = mrpt::containers::CDynamicGrid<float>;
-
-/** Grids beyond this are taken for a damaged file. */
-constexpr uint32_t kMaxSide = 1u << 16;
 
 /** A limit this close to a multiple of the resolution (in cells) is that multiple. */
 constexpr double kSameLimit = 1e-6;

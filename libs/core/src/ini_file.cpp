@@ -7,21 +7,12 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <string_view>
 #include <utility>
+
+#include "text.h"
 
 namespace submap_slam {
 namespace {
-
-/** What some editors put in front of UTF-8. */
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
-std::string trimmed(const std::string& text) {
-  const char* blanks = " \t\r";
-  const auto first = text.find_first_not_of(blanks);
-  if (first == std::string::npos) return {};
-  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
 
 bool isComment(const std::string& text) {
   return text[0] == '#' || text[0] == ';' || text.compare(0, 2, "//") == 0;

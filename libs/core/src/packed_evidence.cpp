@@ -4,13 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "grid_limits.h"
+
 namespace submap_slam {
-namespace {
-
-/** Grids beyond this are taken for a damaged file. */
-constexpr uint32_t kMaxSide = 1u << 16;
-
-}  // namespace
 
 PackedEvidence::PackedEvidence(double x_min, double x_max, double y_min, double y_max, double resolution,
                                std::size_t nx, std::size_t ny)

@@ -9,6 +9,8 @@
 #include <charconv>
 #include <ostream>
 
+#include "text.h"
+
 namespace submap_slam {
 namespace {
 
@@ -18,12 +20,6 @@ struct Overloaded : Ts... {
 };
 template <class... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
-
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
-}
 
 std::string qualified(const Parameter& p) { return fmt::format("[{}] {}", p.section, p.key); }
 

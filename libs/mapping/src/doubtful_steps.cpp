@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "odometry_increment.h"
+
 namespace submap_slam {
 namespace {
 
@@ -17,11 +19,6 @@ constexpr double kLeap = 2.5, kLeast_m = 0.3, kLeast_rad = 0.3;
 
 /** What a step may be off by that scans do not bear out: only odometry says something of it (m, rad). */
 constexpr double kAnywhere_m = 5, kAnywhere_rad = 1;
-
-std::optional<TPose2D> incrementBetween(const Frame& a, const Frame& b) {
-  if (!a.odometry || !b.odometry) return std::nullopt;
-  return *b.odometry - *a.odometry;
-}
 
 double distanceOf(const TPose2D& step) { return std::hypot(step.x, step.y); }
 double turnOf(const TPose2D& step) { return std::abs(mrpt::math::wrapToPi(step.phi)); }

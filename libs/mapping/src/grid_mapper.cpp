@@ -10,16 +10,12 @@
 #include <cmath>
 
 #include "doubtful_steps.h"
+#include "odometry_increment.h"
 
 namespace submap_slam {
 namespace {
 
 using mrpt::math::TPose2D;
-
-std::optional<TPose2D> incrementBetween(const Frame& a, const Frame& b) {
-  if (!a.odometry || !b.odometry) return std::nullopt;
-  return *b.odometry - *a.odometry;
-}
 
 /** Frames [warm_up, end) of a stretch of which [first, end) are the submap's own; `end` is the next submap's
  * first frame or the end of the stretch. */

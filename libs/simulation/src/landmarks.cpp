@@ -10,7 +10,9 @@
 #include <cmath>
 #include <optional>
 
+#include "constants.h"
 #include "log_time.h"
+#include "require.h"
 
 namespace submap_slam {
 namespace {
@@ -18,19 +20,6 @@ namespace {
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
 using mrpt::math::TTwist2D;
-
-/** Streams of random numbers of one seed. */
-enum Stream : uint32_t { kControlStream = 3, kSensorStream = 4, kPlaceStream = 5 };
-
-constexpr double kOdometryStep = 1e-6;  // m, rad, m/s, rad/s
-
-void require(bool holds, const char* member, const char* expected) {
-  if (!holds) throw ConfigError(fmt::format("{} must be {}", member, expected));
-}
-
-void requireNotNegative(double value, const char* member) {
-  require(value >= 0 && std::isfinite(value), member, "zero or positive");
-}
 
 /** Uniform in (0, 1], from two normal numbers: their squared norm is exponentially distributed. */
 double uniform(NormalGenerator& normal) {

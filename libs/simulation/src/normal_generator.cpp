@@ -2,10 +2,10 @@
 
 #include <cmath>
 
+#include "constants.h"
+
 namespace submap_slam {
 namespace {
-
-constexpr double kPi = 3.141592653589793;
 
 std::mt19937_64 seededEngine(uint64_t seed, uint32_t stream) {
   std::seed_seq sequence{static_cast<uint32_t>(seed), static_cast<uint32_t>(seed >> 32), stream};

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <string>
 
+#include "constants.h"
+
 namespace submap_slam {
 namespace {
 
 using mrpt::math::TPoint2D;
 using mrpt::math::TPose2D;
-
-constexpr double kPi = 3.141592653589793;
 
 /** Sharper turns are made on the spot: their arc would leave the legs far from the way point (rad). */
 constexpr double kSharpestArc = 150.0 / 180.0 * kPi;

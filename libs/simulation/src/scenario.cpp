@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "constants.h"
+
 namespace submap_slam {
 namespace {
-
-constexpr double kPi = 3.141592653589793;
 
 /** A scanner of the kind of Hokuyo's UTM-30LX. */
 LaserModel wideLaser() {

@@ -1,21 +1,10 @@
-#include <submap_slam/core/errors.h>
 #include <submap_slam/simulation/sensors.h>
 
 #include <cmath>
-#include <string>
+
+#include "require.h"
 
 namespace submap_slam {
-namespace {
-
-void require(bool holds, const char* member, const char* expected) {
-  if (!holds) throw ConfigError(std::string(member) + " must be " + expected);
-}
-
-void requireNotNegative(double value, const char* member) {
-  require(value >= 0 && std::isfinite(value), member, "zero or positive");
-}
-
-}  // namespace
 
 OdometryModel OdometryModel::perfect() {
   OdometryModel model;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constants.h"
 #include "log_time.h"
 
 namespace submap_slam {
@@ -14,10 +15,6 @@ namespace {
 using mrpt::math::TPose2D;
 using mrpt::obs::CObservation2DRangeScan;
 
-/** Streams of random numbers of one seed. */
-enum Stream : uint32_t { kOdometryStream = 1, kLaserStream = 2 };
-
-constexpr double kOdometryStep = 1e-6;  // m, rad
 constexpr double kTimeRounding = 1e-9;  // s; a step that ends at the time of an event belongs to it
 
 /** Measures a robot's steps and adds them up. */

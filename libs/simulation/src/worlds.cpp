@@ -6,12 +6,13 @@
 #include <cmath>
 #include <utility>
 
+#include "constants.h"
+
 namespace submap_slam {
 namespace {
 
 using mrpt::math::TPoint2D;
 
-constexpr double kPi = 3.141592653589793;
 constexpr double kWallThickness = 0.15;
 constexpr double kDoorWidth = 1.1;
 
