@@ -4,6 +4,7 @@
 #include <submap_slam/report/comparison.h>
 #include <submap_slam/report/web_page.h>
 
+#include <cstdio>
 #include <memory>
 #include <set>
 
@@ -36,6 +37,7 @@ int runCompare(const CompareOptions& options) {
   writeText(out.file("compare.csv"), csv(comparison));
   writeText(page, webPage(comparisonPage(runs, comparison)));
   if (!options.quiet) fmt::print("{}", table);
+  std::fflush(stdout);  // the table comes first where both go into one file
   if (!options.quiet) fmt::print(stderr, "page: {}\n", page);
   return kSuccess;
 }

@@ -41,35 +41,63 @@ Session::Session(const ViewerOptions& options) : config_(loadConfiguration(optio
   }
 }
 
+namespace {
+
+/** Those of the joiners that join such submaps. */
+template <class Kind>
+std::vector<std::shared_ptr<Kind>> joinersOfKind(const Configuration& config) {
+  std::vector<std::shared_ptr<Kind>> joiners;
+  for (const auto& joiner : config.joiners)
+    if (auto of_kind = std::dynamic_pointer_cast<Kind>(joiner)) joiners.push_back(std::move(of_kind));
+  return joiners;
+}
+
+}  // namespace
+
 std::vector<std::string> Session::joinerNames() const {
-  std::vector<std::string> names{"chain: " +
-                                 (config_->joining.chain.empty() ? "none" : config_->joining.chain)};
-  for (const auto& joiner : config_->joiners)
-    if (std::dynamic_pointer_cast<SubmapJoiner>(joiner)) names.push_back(joiner->name());
+  const auto& chosen = ofLandmarks() ? config_->joining.landmark_joiner : config_->joining.chain;
+  std::vector<std::string> names{(ofLandmarks() ? "landmarks: " : "chain: ") +
+                                 (chosen.empty() ? "none" : chosen)};
+  if (ofLandmarks())
+    for (const auto& joiner : joinersOfKind<LandmarkJoiner>(*config_)) names.push_back(joiner->name());
+  else
+    for (const auto& joiner : joinersOfKind<SubmapJoiner>(*config_)) names.push_back(joiner->name());
   return names;
 }
 
 JoinerChain Session::joinersOf(std::size_t choice) const {
   if (choice == 0) return config_->joinerChain();
-  const std::string name = joinerNames().at(choice);
-  for (const auto& joiner : config_->joiners)
-    if (auto of_grids = std::dynamic_pointer_cast<SubmapJoiner>(joiner); of_grids && joiner->name() == name) {
-      of_grids->validate();
-      return {of_grids};
-    }
-  return {};
+  const auto joiner = joinersOfKind<SubmapJoiner>(*config_).at(choice - 1);
+  joiner->validate();
+  return {joiner};
+}
+
+std::shared_ptr<LandmarkJoiner> Session::landmarkJoinerOf(std::size_t choice) const {
+  if (choice == 0) return config_->landmarkJoiner();
+  const auto joiner = joinersOfKind<LandmarkJoiner>(*config_).at(choice - 1);
+  joiner->validate();
+  return joiner;
+}
+
+std::vector<std::string> Session::sectionsOf(std::size_t choice) const {
+  if (ofLandmarks()) return {landmarkJoinerOf(choice)->name()};
+  std::vector<std::string> sections;
+  for (const auto& joiner : joinersOf(choice)) sections.push_back(joiner->name());
+  return sections;
 }
 
 std::vector<const Parameter*> Session::parametersOf(std::size_t choice) const {
   std::vector<const Parameter*> parameters;
-  for (const auto& joiner : joinersOf(choice))
+  for (const std::string& section : sectionsOf(choice))
     for (const Parameter& parameter : config_->table.parameters())
-      if (parameter.section == joiner->name()) parameters.push_back(&parameter);
+      if (parameter.section == section) parameters.push_back(&parameter);
   return parameters;
 }
 
 void Session::join(std::size_t choice) {
   if (worker_.busy()) return;
+  if (ofLandmarks())
+    return worker_.start(LandmarkJoinTask{model_.landmarkSubmaps(), landmarkJoinerOf(choice)});
   if (model_.submaps().empty()) throw ConfigError("there are no submaps to join");
   JoinTask task{model_.submaps(), model_.edits(), joinersOf(choice), mapMaker(*config_), {}};
   if (choice > 0) task.from = model_.joined();
@@ -88,6 +116,10 @@ void Session::take(JoinNews news) {
   if (!news.stage.empty()) message_ = fmt::format("{}: {:.0f} %", news.stage, 100 * news.fraction);
   if (news.frames) model_.setFrames(*news.frames);
   if (!news.error.empty()) message_ = "not joined: " + news.error;
+  if (news.landmarks) {
+    message_ = fmt::format("joined: {} ({})", toString(news.landmarks->status), news.landmarks->reason);
+    model_.setJoinedLandmarks(std::move(*news.landmarks));
+  }
   if (!news.outcome) return;
   log_ = std::move(news.log);
   message_ = fmt::format("joined: {} ({}){}", toString(news.outcome->map.status), news.outcome->map.reason,
@@ -96,6 +128,7 @@ void Session::take(JoinNews news) {
 }
 
 void Session::saveResults(const std::string& folder) {
+  if (ofLandmarks()) throw ConfigError("submap-slam join writes the results of landmark submaps");
   if (joined_submaps_.empty() || worker_.busy())
     throw ConfigError("join the submaps first; then the result can be saved");
   const OutputDirectory out(folder, false);

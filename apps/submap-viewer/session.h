@@ -28,14 +28,15 @@ class Session {
   ViewerModel& model() { return model_; }
   Configuration& configuration() { return *config_; }
 
-  /** Names to choose from: the chain first, then each joiner of grid submaps. */
+  /** Names to choose from: the chain first, then each joiner of grid submaps. Of landmark submaps, the joiner
+   * of the configuration first, then each that joins them. */
   std::vector<std::string> joinerNames() const;
 
   /** Parameters of that choice; those of the chain are those of all its joiners. */
   std::vector<const Parameter*> parametersOf(std::size_t choice) const;
 
-  /** The chain from the end poses, or one joiner from the frames of now. Throws ConfigError for parameters
-   * that contradict each other. */
+  /** The chain from the end poses, or one joiner from the frames of now; landmark submaps are always joined
+   * from their end poses. Throws ConfigError for parameters that contradict each other. */
   void join(std::size_t choice);
   void stopJoining() { worker_.stop(); }
   bool joining() const { return worker_.busy(); }
@@ -54,6 +55,9 @@ class Session {
 
  private:
   JoinerChain joinersOf(std::size_t choice) const;
+  std::shared_ptr<LandmarkJoiner> landmarkJoinerOf(std::size_t choice) const;
+  std::vector<std::string> sectionsOf(std::size_t choice) const;
+  bool ofLandmarks() const { return !model_.landmarkSubmaps().empty(); }
   void take(JoinNews news);
 
   std::unique_ptr<Configuration> config_;

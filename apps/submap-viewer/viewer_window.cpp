@@ -217,6 +217,7 @@ void ViewerWindow::refresh() {
     session_.update();
     const std::lock_guard lock(background_scene_mtx);
     scene_.update(session_.model());
+    clipDepth(*scene_.scene(), camera().getZoomDistance());
   } catch (const std::exception& error) {
     session_.say(error.what());
   }

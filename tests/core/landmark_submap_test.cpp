@@ -61,6 +61,33 @@ TEST(LandmarkSubmap, IsReadBackAsItWasWritten) {
   EXPECT_EQ(read->nodes[1].pose, written.nodes[1].pose);
 }
 
+/** Version 0 had neither the word on the ids nor the path. */
+TEST(LandmarkSubmap, Version0IsStillRead) {
+  LandmarkSubmap written = twoFeatures();
+  written.nodes.clear();
+  mrpt::io::CMemoryStream memory;
+  mrpt::serialization::archiveFrom(memory) << written;
+  std::string bytes(static_cast<const char*>(memory.getRawBufferData()), memory.getTotalBytesCount());
+  const std::string name = "submap_slam::LandmarkSubmap";
+  char& version = bytes[bytes.find(name) + name.size()];
+  ASSERT_EQ(version, 1);
+  version = 0;
+  constexpr std::size_t kAdded = sizeof(bool) + sizeof(uint32_t), kEndMark = 1;
+  bytes.erase(bytes.size() - kEndMark - kAdded, kAdded);
+
+  mrpt::io::CMemoryStream old;
+  old.Write(bytes.data(), bytes.size());
+  old.Seek(0);
+  auto archive = mrpt::serialization::archiveFrom(old);
+  const auto read = archive.ReadObject<LandmarkSubmap>();
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->features[1].id, 9u);
+  EXPECT_EQ(read->covariance, written.covariance);
+  EXPECT_TRUE(read->ids_known);
+  EXPECT_TRUE(read->nodes.empty());
+  EXPECT_EQ(old.getPosition(), bytes.size());
+}
+
 /** Two submaps of 4 m along x, the second one turned left at the end of the first. */
 LandmarkSubmaps twoStraights() {
   LandmarkSubmaps submaps;

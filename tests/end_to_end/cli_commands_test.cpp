@@ -263,5 +263,12 @@ TEST_F(CliTest, EvalTakesRelationsByTheirLength) {
   EXPECT_EQ(used("--max-dt", "95"), 2);
 }
 
+TEST_F(CliTest, SubmapsOfAnOlderVersionAreStillOpened) {
+  const std::string old = SUBMAP_SLAM_SOURCE_DIR "/tests/rawlog/data/submaps_version_0.rawlog";
+  const Outcome info = succeed({"info", old});
+  EXPECT_EQ(lines(info.out), 3u + 2u) << info.out;  // submaps, heading, totals
+  EXPECT_EQ(info.err, "");
+}
+
 }  // namespace
 }  // namespace submap_slam::testing

@@ -86,6 +86,6 @@ viewer=$!
 started+=("$viewer")
 fill_screen SceneViewer
 picture sceneviewer-start
-xdotool mousemove 700 450 click --repeat 12 --delay 100 5  # the wheel, away from the map
+xdotool mousemove 700 450 click --repeat 36 --delay 60 5  # the wheel, away from the map
 picture sceneviewer
 close_viewer

@@ -10,6 +10,8 @@ PARTS = {
     "off-screen": (60, (0, 0, 1, 1)),
     "joined": (60, (0, 0, 1, 1)),
     "log": (4, (0, 0, 1, 1)),
+    "landmarks": (6, (0, 0, 1, 1)),
+    "landmarks-joined": (4, (0, 0, 1, 1)),
     "viewer-start": (60, (0.2, 0.1, 0.7, 0.8)),
     "viewer-timeline": (60, (0.2, 0.1, 0.7, 0.8)),
     "viewer-selected": (60, (0.2, 0.1, 0.7, 0.8)),
@@ -18,7 +20,7 @@ PARTS = {
     "rawlogviewer": (30, (0.4, 0.3, 1, 1)),
     "sceneviewer": (30, (0, 0.1, 1, 1)),
 }
-DIFFERENT = [("viewer-start", "viewer-timeline"), ("viewer-timeline", "viewer-selected"), ("viewer-joined", "viewer-help")]
+DIFFERENT = [("landmarks", "landmarks-joined"), ("viewer-start", "viewer-timeline"), ("viewer-timeline", "viewer-selected"), ("viewer-joined", "viewer-help")]
 
 
 def colours(picture, part):

@@ -52,9 +52,9 @@ def browser(size, dark=False):
         driver.quit()
 
 
-def open_page(driver, file, drawn=".map canvas"):
+def open_page(driver, file):
     driver.get(f"file://{file}")
-    wait_until(lambda: driver.find_elements(By.CSS_SELECTOR, drawn), f"{drawn} is there")
+    wait_until(lambda: driver.find_elements(By.CSS_SELECTOR, ".map canvas, .chart canvas"), "map or charts are drawn")
 
 
 def expect_quiet(driver):

@@ -172,7 +172,7 @@ y = gps_rmse_m
 def check_experiment(file, folder):
     """Tables, plots, errors of failed cells, and how all was made."""
     with browser(DESKTOP) as driver:
-        open_page(driver, file, ".chart canvas")
+        open_page(driver, file)
         expect_panels(driver, EXPERIMENT_PANELS)
         title = driver.find_element(By.TAG_NAME, "h1").text
         expect(title == "</script><b>Sight and hearing", f"the title is {title}")
@@ -181,7 +181,7 @@ def check_experiment(file, folder):
         take_picture(driver, os.path.join(folder, "experiment.png"))
         expect_quiet(driver)
     with browser(PHONE, dark=True) as driver:
-        open_page(driver, file, ".chart canvas")
+        open_page(driver, file)
         expect_no_overflow(driver)
         expect_panels(driver, EXPERIMENT_PANELS)
         take_picture(driver, os.path.join(folder, "experiment_phone.png"))

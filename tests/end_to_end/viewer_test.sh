@@ -27,8 +27,28 @@ echo "$said"
 [[ $said == "submap-viewer: error: no display: "*"use --screenshot FILE" ]] || fail "no clear line"
 (($(wc -l <<<"$said") == 1)) || fail "one line expected"
 env -u DISPLAY "$bin/submap-viewer" "$work/run" --screenshot "$pictures/off-screen.png"
-env -u DISPLAY "$bin/submap-viewer" "$work/run/submaps.rawlog" --join --screenshot "$pictures/joined.png"
+said=$(env -u DISPLAY "$bin/submap-viewer" "$work/run/submaps.rawlog" --join --screenshot "$pictures/joined.png" 2>&1)
+[[ $said == "joined: "* ]] || fail "how joining ended was not said: $said"
 env -u DISPLAY "$bin/submap-viewer" "$log" --screenshot "$pictures/log.png"
+env -u DISPLAY "$bin/submap-viewer" "$source_dir/tests/rawlog/data/submaps_version_0.rawlog" \
+  --screenshot "$pictures/old-version.png"
+
+echo "--- landmark submaps"
+"$bin/submap-slam" build "$source_dir/rawlogs/landmarks.rawlog" -o "$work/landmarks.rawlog" --quiet
+env -u DISPLAY "$bin/submap-viewer" "$work/landmarks.rawlog" --screenshot "$pictures/landmarks.png"
+said=$(env -u DISPLAY "$bin/submap-viewer" "$work/landmarks.rawlog" --join --toggle gm \
+  --screenshot "$pictures/landmarks-joined.png" 2>&1)
+[[ $said == "joined: "* ]] || fail "the landmarks were not joined: $said"
+
+echo "--- what is no rawlog"
+echo "This is no log at all." >"$work/text.rawlog"
+status=0
+said=$(env -u DISPLAY "$bin/submap-viewer" "$work/text.rawlog" --screenshot "$pictures/none.png" 2>&1) || status=$?
+echo "$said"
+((status == 2)) || fail "exit code $status for a file that is no rawlog"
+[[ $said == "submap-viewer: error: "*text.rawlog* ]] || fail "no clear line"
+(($(wc -l <<<"$said") == 1)) || fail "one line expected"
+[[ ! -e $pictures/none.png ]] || fail "a picture of nothing was made"
 
 echo "--- on a virtual screen"
 xvfb-run -a -s "-screen 0 1400x900x24 +extension GLX" \

@@ -41,6 +41,22 @@ inline GridSubmaps straightSubmaps(uint32_t count, std::size_t nodes = 4) {
   return submaps;
 }
 
+/** Landmark submaps of 10 m along the x axis; each sees a landmark 2 m to the left of its start and one 2 m
+ * to the left of its end, which is the first of the next. */
+inline LandmarkSubmaps landmarkSubmaps(uint32_t count) {
+  LandmarkSubmaps submaps;
+  for (uint32_t k = 0; k < count; ++k) {
+    auto submap = LandmarkSubmap::Create();
+    submap->id = k;
+    submap->end_pose = {10, 0, 0};
+    submap->features = {{k + 1, 0, 2, 1}, {k + 2, 10, 2, 1}};
+    submap->covariance.setIdentity(7);
+    submap->covariance *= 0.01;
+    submaps.push_back(submap);
+  }
+  return submaps;
+}
+
 inline Constraint loop(uint32_t from, uint32_t to, bool accepted) {
   Constraint constraint;
   constraint.from = from, constraint.to = to;

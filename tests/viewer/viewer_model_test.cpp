@@ -5,6 +5,7 @@
 #include <submap_slam/core/errors.h>
 #include <submap_slam/output/graph_file.h>
 #include <submap_slam/output/run_tables.h>
+#include <submap_slam/rawlog/landmark_log.h>
 #include <submap_slam/viewer/viewer_source.h>
 
 #include <fstream>
@@ -49,6 +50,30 @@ TEST(ViewerModel, LogWithoutSubmapsIsShownAlongItsOdometry) {
   EXPECT_EQ(model.moments(), 2u);
   EXPECT_DOUBLE_EQ(model.moment(1).pose.y, 4);
   EXPECT_FALSE(model.moment(1).submap);
+}
+
+TEST(ViewerModel, LandmarkSubmapsFollowTheirEndPosesUntilTheyAreJoined) {
+  ViewerModel model;
+  model.setLandmarks(landmarkSubmaps(3));
+  EXPECT_FALSE(model.empty());
+  ASSERT_EQ(model.frames().size(), 4u);  // and where the last one ends
+  EXPECT_DOUBLE_EQ(model.frames()[2].x, 20);
+  EXPECT_NEAR(model.joinedFrames()[2].cov(0, 0), 0.02, 1e-9);
+  ASSERT_EQ(model.moments(), 3u);
+  EXPECT_EQ(model.cursor(), 2u);
+  EXPECT_DOUBLE_EQ(model.moment(2).pose.x, 30);
+  EXPECT_TRUE(model.scansAtCursor().scans.empty());
+  EXPECT_THAT(model.status(), HasSubstr("pose 3 of 3"));
+  EXPECT_THAT(model.status(), HasSubstr("3 landmark submaps, 0 landmarks joined"));
+
+  JoinedLandmarks joined = model.joinedLandmarks();
+  joined.frames[3].mean = mrpt::poses::CPose2D(30, 5, 0);
+  joined.landmarks.resize(4);
+  model.setJoinedLandmarks(joined);
+  EXPECT_DOUBLE_EQ(model.moment(2).pose.y, 5);
+  EXPECT_THAT(model.status(), HasSubstr("4 landmarks joined"));
+  joined.frames.pop_back();
+  EXPECT_THROW(model.setJoinedLandmarks(joined), std::invalid_argument);
 }
 
 TEST(ViewerModel, FramesOnTheWayMoveTheMomentsUntilTheResult) {
@@ -132,6 +157,14 @@ TEST(ViewerModel, TheFirstSubmapIsFixedAnyhow) {
   model.select(0);
   model.toggleFix();
   EXPECT_TRUE(model.edits().list.empty());
+}
+
+TEST(ViewerSource, FilesOfLandmarkSubmapsAreShown) {
+  const TempFolder folder;
+  writeLandmarkText(folder.file("submaps.txt"), landmarkSubmaps(3));
+  ViewerModel model;
+  EXPECT_EQ(openInto(model, folder.file("submaps.txt")), "");
+  EXPECT_EQ(model.landmarkSubmaps().size(), 3u);
 }
 
 TEST(ViewerSource, WhatIsNoLogIsRefused) {

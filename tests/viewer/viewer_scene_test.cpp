@@ -44,9 +44,37 @@ class SteppingJoiner : public SubmapJoiner {
 
 IMPLEMENTS_MRPT_OBJECT(SteppingJoiner, SubmapJoiner, submap_slam)
 
+/** Makes a landmark of each submap. */
+class CountingJoiner : public LandmarkJoiner {
+  DEFINE_MRPT_OBJECT(CountingJoiner, submap_slam)
+
+ public:
+  std::string name() const override { return "counting"; }
+  std::string description() const override { return "for tests"; }
+  void describe(ParameterTable&) override {}
+  JoinedLandmarks join(const LandmarkSubmaps& submaps, const ProgressCallback& progress) const override {
+    JoinedLandmarks joined;
+    joined.landmarks.resize(submaps.size());
+    EXPECT_TRUE(progress(0.5, "counting"));
+    return joined;
+  }
+};
+
+IMPLEMENTS_MRPT_OBJECT(CountingJoiner, LandmarkJoiner, submap_slam)
+
 namespace {
 
 using mrpt::math::TPose2D;
+using mrpt::opengl::CSetOfLines;
+
+/** A task that makes the map by fusing the evidence of the submaps. */
+JoinTask joinTask(GridSubmaps submaps, JoinerChain joiners, Edits edits = {},
+                  std::optional<JoinedMap> from = {}) {
+  const auto fuse = [](const GridSubmaps& joined, const JoinedMap& map) {
+    return fuseEvidence(joined, map.frames, 0);
+  };
+  return {std::move(submaps), std::move(edits), std::move(joiners), fuse, std::move(from)};
+}
 
 JoinNews untilDone(JoinWorker& worker) {
   JoinNews all;
@@ -54,6 +82,7 @@ JoinNews untilDone(JoinWorker& worker) {
     JoinNews news = worker.takeNews();
     if (news.frames) all.frames = news.frames;
     if (news.outcome) all.outcome = std::move(news.outcome);
+    if (news.landmarks) all.landmarks = std::move(news.landmarks);
     if (!news.error.empty()) all.error = news.error;
     std::this_thread::yield();
   }
@@ -64,6 +93,12 @@ std::size_t linesOf(const ViewerScene& scene, const std::string& name) {
   const auto object = scene.scene()->getByName(name);
   const auto lines = std::dynamic_pointer_cast<mrpt::opengl::CSetOfLines>(object);
   return lines ? lines->size() : 0;
+}
+
+std::pair<mrpt::math::TPoint3D, mrpt::math::TPoint3D> endsOf(const CSetOfLines& lines, std::size_t i) {
+  double x0, y0, z0, x1, y1, z1;
+  lines.getLineByIndex(i, x0, y0, z0, x1, y1, z1);
+  return {{x0, y0, z0}, {x1, y1, z1}};
 }
 
 TEST(ViewerScene, HasWhatTheModelShows) {
@@ -105,10 +140,48 @@ TEST(ViewerScene, GridsMoveWithTheirFrames) {
   EXPECT_DOUBLE_EQ(grid->getPoseYawRad(), 1);
 }
 
-TEST(ViewerScene, ViewHoldsAllSubmaps) {
+TEST(ViewerScene, LandmarksHaveEllipsesInTheirFrames) {
+  ViewerModel model;
+  model.setLandmarks(landmarkSubmaps(3));
+  ViewerScene scene;
+  scene.update(model);
+  EXPECT_EQ(linesOf(scene, "frames"), 4u);
+  const auto submap = scene.scene()->getByName("landmark submap 1");
+  ASSERT_TRUE(submap);
+  EXPECT_DOUBLE_EQ(submap->getPoseX(), 10);
+  const auto ellipses = std::dynamic_pointer_cast<CSetOfLines>(
+      dynamic_cast<mrpt::opengl::CSetOfObjects&>(*submap).getByName("ellipses"));
+  ASSERT_TRUE(ellipses);
+  for (std::size_t i = 0; i < ellipses->size(); ++i) {  // 3 sigma of 0.1 m
+    const auto [first, second] = endsOf(*ellipses, i);
+    const bool of_first = first.x < 5;
+    EXPECT_NEAR(std::hypot(first.x - (of_first ? 0 : 10), first.y - 2), 0.3, 1e-6);
+    EXPECT_NEAR(std::hypot(second.x - (of_first ? 0 : 10), second.y - 2), 0.3, 1e-6);
+  }
+  const View view = ViewerScene::viewOfAll(model, 2);
+  EXPECT_DOUBLE_EQ(view.x, 15);
+  EXPECT_DOUBLE_EQ(view.y, 1);
+
+  JoinedLandmarks joined = model.joinedLandmarks();
+  joined.frames[1].mean = mrpt::poses::CPose2D(10, 5, 0);
+  joined.objective = 1;
+  joined.landmarks.resize(4);
+  for (auto& landmark : joined.landmarks) landmark.covariance.setIdentity();
+  model.setJoinedLandmarks(joined);
+  model.toggle(Layer::kGrids);
+  model.toggle(Layer::kMap);
+  scene.update(model);
+  EXPECT_DOUBLE_EQ(submap->getPoseY(), 5);
+  EXPECT_FALSE(submap->isVisible());
+  ASSERT_TRUE(scene.scene()->getByName("joined landmarks"));
+  EXPECT_TRUE(scene.scene()->getByName("joined landmarks")->isVisible());
+}
+
+TEST(ViewerScene, ViewHoldsAllSubmapsAndIsCentredOnWhatIsSeen) {
   const View view = ViewerScene::viewOfAll(sampleModel(), 2);
-  EXPECT_NEAR(view.x, 8, 0.2);   // x from -2 to 18
-  EXPECT_GE(view.size * 2, 20);  // the width
+  EXPECT_NEAR(view.x, 8, 0.2);      // walls of x from -2 to 18
+  EXPECT_NEAR(view.y, 0.775, 0.1);  // rows 20 and 35 of the grids, whose other rows nobody saw
+  EXPECT_GE(view.size * 2, 20);     // the width
   EXPECT_EQ(ViewerScene::viewOfAll(ViewerModel(), 1).size, View().size);
 }
 
@@ -136,8 +209,8 @@ TEST(ScenePicture, IsRenderedWithoutADisplay) {
 
 TEST(JoinWorker, ShowsFramesOnTheWayAndTheResult) {
   JoinWorker worker;
-  worker.start({straightSubmaps(3), {}, {std::make_shared<SteppingJoiner>()}, 0, {}});
-  EXPECT_THROW(worker.start({}), std::logic_error);
+  worker.start(joinTask(straightSubmaps(3), {std::make_shared<SteppingJoiner>()}));
+  EXPECT_THROW(worker.start(JoinTask{}), std::logic_error);
   const JoinNews news = untilDone(worker);
   ASSERT_TRUE(news.frames);
   EXPECT_GE(news.frames->back().y, 1);
@@ -151,21 +224,30 @@ TEST(JoinWorker, OneJoinerGoesOnFromTheFramesOfNow) {
   const GridSubmaps submaps = straightSubmaps(3);
   JoinedMap from = chainSubmaps(submaps);
   from.frames[1].mean = mrpt::poses::CPose2D(4, 0.5, 0);
-  worker.start({submaps, {}, {std::make_shared<SteppingJoiner>()}, 0, from});
+  worker.start(joinTask(submaps, {std::make_shared<SteppingJoiner>()}, {}, from));
   EXPECT_DOUBLE_EQ(untilDone(worker).outcome->map.frames[1].mean.y(), 0.5);
+}
+
+TEST(JoinWorker, JoinsLandmarks) {
+  JoinWorker worker;
+  worker.start(LandmarkJoinTask{landmarkSubmaps(3), std::make_shared<CountingJoiner>()});
+  const JoinNews news = untilDone(worker);
+  ASSERT_TRUE(news.landmarks);
+  EXPECT_EQ(news.landmarks->landmarks.size(), 3u);
+  EXPECT_FALSE(news.outcome);
 }
 
 TEST(JoinWorker, EditsThatDoNotFitAreTold) {
   JoinWorker worker;
   Edits edits;
   edits.list.push_back(readEdit("mask 17", "viewer"));
-  worker.start({straightSubmaps(3), edits, {}, 0, {}});
+  worker.start(joinTask(straightSubmaps(3), {}, edits));
   EXPECT_THAT(untilDone(worker).error, ::testing::HasSubstr("there is no submap 17"));
 }
 
 TEST(JoinWorker, EndsWhenItIsDestroyed) {
   JoinWorker worker;
-  worker.start({straightSubmaps(3), {}, {std::make_shared<SteppingJoiner>()}, 0, {}});
+  worker.start(joinTask(straightSubmaps(3), {std::make_shared<SteppingJoiner>()}));
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ mrpt::opengl::CSetOfLines::Ptr trajectoryObject(const Trajectory& trajectory) {
   line->setName("trajectory");
   line->setColor_u8(0x20, 0x60, 0xd0);
   line->setLineWidth(2);
-  constexpr double kAboveGrid_m = 0.02;
+  constexpr double kAboveGrid_m = 0.15;  // seen from afar too
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
     const auto &a = trajectory[i - 1].pose, &b = trajectory[i].pose;
     line->appendLine(a.x, a.y, kAboveGrid_m, b.x, b.y, kAboveGrid_m);
@@ -73,7 +73,7 @@ mrpt::opengl::CSetOfObjects::Ptr frameObject(std::size_t id, const CPosePDFGauss
 }
 
 mrpt::opengl::CEllipsoid2D::Ptr ellipseObject(const CPosePDFGaussian& frame) {
-  constexpr double kAboveGrid_m = 0.03;
+  constexpr double kAboveGrid_m = 0.16;
   auto ellipse = mrpt::opengl::CEllipsoid2D::Create();
   ellipse->setColor_u8(0xd0, 0x30, 0x30);
   ellipse->setQuantiles(3);

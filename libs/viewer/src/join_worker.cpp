@@ -49,12 +49,20 @@ JoinWorker::~JoinWorker() {
 }
 
 void JoinWorker::start(JoinTask task) {
+  start([this, given = std::move(task)] { run(given); });
+}
+
+void JoinWorker::start(LandmarkJoinTask task) {
+  start([this, given = std::move(task)] { run(given); });
+}
+
+void JoinWorker::start(std::function<void()> work) {
   if (busy()) throw std::logic_error("the worker joins already");
   stop_ = done_ = false;
   news_ = {};
-  thread_ = std::thread([this, given = std::move(task)] {
+  thread_ = std::thread([this, todo = std::move(work)] {
     try {
-      run(given);
+      todo();
     } catch (const std::exception& error) {
       const std::lock_guard lock(mutex_);
       news_.error = error.what();
@@ -76,12 +84,24 @@ void JoinWorker::run(const JoinTask& task) {
   news_.log = listener.logLines();
 }
 
+void JoinWorker::run(const LandmarkJoinTask& task) {
+  Listener listener(*this);
+  const auto progress = [&](double fraction, const std::string& what) {
+    listener.progress(what, fraction, 0, "");
+    return !listener.stopRequested();
+  };
+  JoinedLandmarks joined = task.joiner->join(task.submaps, progress);
+  const std::lock_guard lock(mutex_);
+  news_.landmarks = std::move(joined);
+}
+
 JoinNews JoinWorker::takeNews() {
   if (done_ && thread_.joinable()) thread_.join();
   const std::lock_guard lock(mutex_);
   JoinNews taken = std::move(news_);
   news_ = {};
-  if (busy()) {
+  const bool ended = taken.outcome || taken.landmarks || !taken.error.empty();
+  if (busy() && !ended) {
     news_.stage = taken.stage;
     news_.fraction = taken.fraction;
   }

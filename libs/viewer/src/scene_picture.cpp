@@ -23,6 +23,7 @@ mrpt::img::CImage render(const mrpt::opengl::COpenGLScene& scene, const View& vi
   try {
     mrpt::opengl::CFBORender renderer(width, height);
     renderer.setCamera(scene, cameraFor(view));
+    clipDepth(scene, zoomOf(view.size));
     mrpt::img::CImage picture;
     renderer.render_RGB(scene, picture);
     return picture;
@@ -36,8 +37,9 @@ mrpt::img::CImage render(const mrpt::opengl::COpenGLScene& scene, const View& vi
 
 float zoomOf(double shorter_side_m) { return static_cast<float>(2 * shorter_side_m); }
 
-void lookFromAbove(mrpt::opengl::COpenGLScene& scene, const View& view) {
-  scene.getViewport()->getCamera() = cameraFor(view);
+void clipDepth(const mrpt::opengl::COpenGLScene& scene, float zoom) {
+  constexpr float kNearest_m = 0.1f, kTurned = 3, kLeast_m = 100;  // a view that is turned is deep
+  scene.getViewport()->setViewportClipDistances(kNearest_m, kTurned * zoom + kLeast_m);
 }
 
 void writePicture(const std::string& file, const mrpt::opengl::COpenGLScene& scene, const View& view,

@@ -43,6 +43,26 @@ void ViewerModel::setLog(std::vector<Frame> frames) {
   cursor_ = 0;
 }
 
+void ViewerModel::setLandmarks(LandmarkSubmaps submaps) {
+  JoinedLandmarks chain;
+  chain.frames.emplace_back();
+  for (const auto& submap : submaps) {
+    const mrpt::math::CMatrixDouble33 covariance(submap->covariance.blockCopy<3, 3>(0, 0));
+    const mrpt::poses::CPosePDFGaussian step(mrpt::poses::CPose2D(submap->end_pose), covariance);
+    chain.frames.push_back(chain.frames.back() + step);
+  }
+  landmark_submaps_ = std::move(submaps);
+  setJoinedLandmarks(std::move(chain));
+  setCursor(moments());
+}
+
+void ViewerModel::setJoinedLandmarks(JoinedLandmarks joined) {
+  landmark_path_ = trajectoryOf(landmark_submaps_, joined);
+  joined_landmarks_ = std::move(joined);
+  frames_.clear();
+  for (const auto& frame : joined_landmarks_.frames) frames_.push_back(frame.mean.asTPose());
+}
+
 void ViewerModel::addSubmaps(const GridSubmaps& more) {
   if (more.empty()) return;
   const bool at_end = cursor_ + 1 >= moments();
@@ -75,7 +95,10 @@ void ViewerModel::setFrames(const std::vector<TPose2D>& frames) {
   if (frames.size() == submaps_.size()) frames_ = frames;
 }
 
-std::size_t ViewerModel::moments() const { return submaps_.empty() ? log_.size() : first_moment_.back(); }
+std::size_t ViewerModel::moments() const {
+  if (!landmark_submaps_.empty()) return landmark_path_.size();
+  return submaps_.empty() ? log_.size() : first_moment_.back();
+}
 
 void ViewerModel::setCursor(std::size_t moment) {
   cursor_ = moments() == 0 ? 0 : std::min(moment, moments() - 1);
@@ -87,6 +110,10 @@ void ViewerModel::moveCursor(long steps) {
 }
 
 Moment ViewerModel::moment(std::size_t position) const {
+  if (!landmark_submaps_.empty()) {
+    const auto& [stamp, pose] = landmark_path_.at(position);
+    return {stamp, pose, std::nullopt, position};
+  }
   if (submaps_.empty()) {
     const Frame& frame = log_.at(position);
     return {frame.stamp, frame.odometry.value_or(TPose2D()), std::nullopt, position};
@@ -100,7 +127,7 @@ Moment ViewerModel::moment(std::size_t position) const {
 }
 
 ViewerModel::PlacedScans ViewerModel::scansAtCursor() const {
-  if (moments() == 0) return {};
+  if (moments() == 0 || !landmark_submaps_.empty()) return {};
   const Moment here = moment(cursor_);
   if (!here.submap) return {here.pose, log_[here.node].scans};
   const std::vector<SubmapScans> scans = submaps_[*here.submap]->scans();
@@ -194,7 +221,8 @@ void ViewerModel::toggleReject() {
 }
 
 bool ViewerModel::fixed(std::size_t submap) const {
-  const uint32_t id = submaps_.at(submap)->id;
+  if (submap >= submaps_.size()) return false;
+  const uint32_t id = submaps_[submap]->id;
   return std::any_of(edits_.list.begin(), edits_.list.end(),
                      [id](const Edit& e) { return e.kind == Edit::Kind::kFix && e.to == id; });
 }
@@ -216,8 +244,12 @@ std::string ViewerModel::status() const {
   if (moments() == 0) return "nothing to show yet";
   const Moment here = moment(cursor_), first = moment(0);
   const double seconds = std::chrono::duration<double>(here.stamp - first.stamp).count();
-  std::string text = fmt::format("scan {} of {}, {:.1f} s, x {:.2f} m, y {:.2f} m, {:.1f} deg", cursor_ + 1,
-                                 moments(), seconds, here.pose.x, here.pose.y, here.pose.phi * 180 / M_PI);
+  std::string text = fmt::format("{} {} of {}, {:.1f} s, x {:.2f} m, y {:.2f} m, {:.1f} deg",
+                                 landmark_submaps_.empty() ? "scan" : "pose", cursor_ + 1, moments(), seconds,
+                                 here.pose.x, here.pose.y, here.pose.phi * 180 / M_PI);
+  if (!landmark_submaps_.empty())
+    text += fmt::format(", {} landmark submaps, {} landmarks joined", landmark_submaps_.size(),
+                        joined_landmarks_.landmarks.size());
   if (here.submap) text += fmt::format(", submap {}", submaps_[*here.submap]->id);
   if (selected_constraint_) {
     const Constraint& c = joined_.constraints[*selected_constraint_];

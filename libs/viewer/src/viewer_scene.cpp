@@ -8,6 +8,7 @@
 #include <mrpt/poses/CPose3D.h>
 #include <submap_slam/viewer/grid_picture.h>
 #include <Eigen/LU>
+#include "landmark_picture.h"
 
 #include <algorithm>
 #include <array>
@@ -79,7 +80,7 @@ void insertFrames(const ViewerModel& model, CSetOfObjects& out) {
 /** 3-sigma ellipses of the frames. */
 void insertEllipses(const ViewerModel& model, CSetOfObjects& out) {
   for (std::size_t k = 1; k < model.frames().size(); ++k) {
-    const mrpt::math::CMatrixDouble22 covariance(model.joined().frames[k].cov.blockCopy<2, 2>(0, 0));
+    const mrpt::math::CMatrixDouble22 covariance(model.joinedFrames()[k].cov.blockCopy<2, 2>(0, 0));
     const auto S = covariance.asEigen();
     if (model.hidden(k) || !S.allFinite() || S(0, 0) <= 0 || S.determinant() <= 0) continue;
     auto ellipse = mrpt::opengl::CEllipsoid2D::Create();
@@ -165,6 +166,9 @@ void insertSelection(const ViewerModel& model, CSetOfObjects& out) {
   out.insert(label);
 }
 
+/** Where the poses that MRPT's objects get are, at a height (m). */
+mrpt::poses::CPose3D raised(const TPose2D& pose, double z) { return {pose.x, pose.y, z, pose.phi, 0, 0}; }
+
 /** Corners of everything that is shown (m). */
 struct Extent {
   double x_min = std::numeric_limits<double>::infinity(), x_max = -x_min, y_min = x_min, y_max = -x_min;
@@ -173,7 +177,32 @@ struct Extent {
     x_min = std::min(x_min, x), x_max = std::max(x_max, x);
     y_min = std::min(y_min, y), y_max = std::max(y_max, y);
   }
+
+  /** A point of a frame. */
+  void add(const mrpt::poses::CPose2D& frame, double x, double y) {
+    double x_w = 0, y_w = 0;
+    frame.composePoint(x, y, x_w, y_w);
+    add(x_w, y_w);
+  }
 };
+
+void addGrids(Extent& extent, const ViewerModel& model) {
+  for (std::size_t k = 0; k < model.submaps().size(); ++k) {
+    const auto grid = model.submaps()[k]->packedEvidence();
+    const mrpt::poses::CPose2D frame(model.frames()[k]);
+    grid->forEachObserved([&](int cx, int cy, float, float) {
+      extent.add(frame, grid->xMin() + (cx + 0.5) * grid->resolution(),
+                 grid->yMin() + (cy + 0.5) * grid->resolution());
+    });
+  }
+}
+
+void addLandmarks(Extent& extent, const ViewerModel& model) {
+  for (std::size_t k = 0; k < model.landmarkSubmaps().size(); ++k) {
+    const mrpt::poses::CPose2D frame(model.frames()[k]);
+    for (const auto& feature : model.landmarkSubmaps()[k]->features) extent.add(frame, feature.x, feature.y);
+  }
+}
 
 }  // namespace
 
@@ -181,12 +210,13 @@ ViewerScene::ViewerScene()
     : scene_(mrpt::opengl::COpenGLScene::Create()),
       grids_(CSetOfObjects::Create()),
       map_(CSetOfObjects::Create()),
+      landmarks_(CSetOfObjects::Create()),
       lines_(CSetOfObjects::Create()) {
   scene_->getViewport()->setCustomBackgroundColor({kBackground[0], kBackground[1], kBackground[2]});
-  scene_->getViewport()->setViewportClipDistances(0.1f, 10000.0f);
   grids_->setName("grids");
   map_->setName("map");
-  for (const auto& group : {grids_, map_, lines_}) scene_->insert(group);
+  landmarks_->setName("joined landmarks");
+  for (const auto& group : {grids_, map_, landmarks_, lines_}) scene_->insert(group);
 }
 
 void ViewerScene::updateGrids(const ViewerModel& model) {
@@ -203,10 +233,34 @@ void ViewerScene::updateGrids(const ViewerModel& model) {
     }
     const TPose2D& frame = model.frames()[k];
     const bool on_top = model.selected() == k;
-    grid->setPose(mrpt::poses::CPose3D(frame.x, frame.y, on_top ? kMapHeight : step * static_cast<double>(k),
-                                       frame.phi, 0, 0));
+    grid->setPose(raised(frame, on_top ? kMapHeight : step * static_cast<double>(k)));
     grid->setVisibility(model.shows(Layer::kGrids) && !model.hidden(k) && !model.edits().masks(submap->id));
   }
+}
+
+void ViewerScene::updateFeatures(const ViewerModel& model) {
+  for (std::size_t k = 0; k < model.landmarkSubmaps().size(); ++k) {
+    const auto& submap = model.landmarkSubmaps()[k];
+    auto& features = features_of_[submap];
+    if (!features) {
+      features = featurePicture(*submap, kWalls[k % kWalls.size()]);
+      features->setName(fmt::format("landmark submap {}", submap->id));
+      grids_->insert(features);
+    }
+    features->setPose(raised(model.frames()[k], kMapHeight));
+    features->setVisibility(model.shows(Layer::kGrids));
+  }
+}
+
+void ViewerScene::updateLandmarks(const ViewerModel& model) {
+  const JoinedLandmarks& joined = model.joinedLandmarks();
+  if (landmarks_objective_ != joined.objective) landmarks_->clear();
+  landmarks_objective_ = joined.objective;
+  landmarks_->setVisibility(model.shows(Layer::kMap));
+  if (joined.landmarks.empty() || !landmarks_->empty()) return;
+  auto picture = landmarkPicture(joined.landmarks, kMap);
+  picture->setLocation(0, 0, kMapHeight + 0.1);
+  landmarks_->insert(picture);
 }
 
 void ViewerScene::updateMap(const ViewerModel& model) {
@@ -228,6 +282,8 @@ void ViewerScene::updateMap(const ViewerModel& model) {
 void ViewerScene::update(const ViewerModel& model) {
   updateGrids(model);
   updateMap(model);
+  updateFeatures(model);
+  updateLandmarks(model);
   lines_->clear();
   if (model.moments() == 0) return;
   if (model.shows(Layer::kTrajectory)) lines_->insert(trajectoryOf(model));
@@ -240,16 +296,8 @@ void ViewerScene::update(const ViewerModel& model) {
 
 View ViewerScene::viewOfAll(const ViewerModel& model, double aspect) {
   Extent extent;
-  for (std::size_t k = 0; k < model.submaps().size(); ++k) {
-    const EvidenceSummary grid = model.submaps()[k]->evidenceSummary();
-    if (grid.observed_cells == 0) continue;
-    for (const int column : {0, grid.columns})
-      for (const int row : {0, grid.rows}) {
-        const auto corner = model.frames()[k].composePoint(
-            {grid.x_min + column * grid.resolution, grid.y_min + row * grid.resolution});
-        extent.add(corner.x, corner.y);
-      }
-  }
+  addGrids(extent, model);
+  addLandmarks(extent, model);
   for (std::size_t i = 0; i < model.moments(); ++i) {
     const TPose2D pose = model.moment(i).pose;
     extent.add(pose.x, pose.y);

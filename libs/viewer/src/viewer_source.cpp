@@ -29,8 +29,14 @@ void readJoined(ViewerModel& model, const std::string& folder) {
   model.setJoined(std::move(joined));
 }
 
+std::string openLandmarks(ViewerModel& model, const std::string& file) {
+  model.setLandmarks(readLandmarkSubmaps(file));
+  return "";
+}
+
 std::string openRun(ViewerModel& model, const std::string& folder) {
-  const std::string submaps = inFolder(folder, kSubmapFile);
+  const std::string submaps = inFolder(folder, kSubmapFile), landmarks = inFolder(folder, kLandmarkFile);
+  if (!fs::exists(submaps) && fs::exists(landmarks)) return openLandmarks(model, landmarks);
   if (!fs::exists(submaps))
     throw InputError(fmt::format("{}: holds no {}; expected the folder of a run", folder, kSubmapFile));
   RecoveredSubmaps read = recoverSubmaps(submaps);
@@ -58,10 +64,7 @@ std::string openLog(ViewerModel& model, const std::string& file) {
 std::string openInto(ViewerModel& model, const std::string& file_or_folder) {
   if (!fs::exists(file_or_folder)) throw InputError(fmt::format("{}: no such file", file_or_folder));
   if (fs::is_directory(file_or_folder)) return openRun(model, file_or_folder);
-  if (holdsLandmarkSubmaps(file_or_folder))
-    throw InputError(fmt::format(
-        "{}: holds landmark submaps; expected grid submaps, a rawlog with scans, or the folder of a run",
-        file_or_folder));
+  if (holdsLandmarkSubmaps(file_or_folder)) return openLandmarks(model, file_or_folder);
   RecoveredSubmaps read = recoverSubmaps(file_or_folder);
   if (read.submaps.empty()) return openLog(model, file_or_folder);
   model.addSubmaps(read.submaps);

@@ -5,6 +5,8 @@
 #include <submap_slam/pipeline/joining.h>
 
 #include <atomic>
+#include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -24,12 +26,19 @@ struct JoinTask {
   std::optional<JoinedMap> from;
 };
 
+/** What a joining of landmark submaps needs. */
+struct LandmarkJoinTask {
+  LandmarkSubmaps submaps;
+  std::shared_ptr<const LandmarkJoiner> joiner;  ///< nobody changes its parameters while the worker is busy
+};
+
 /** What became of it since it was last asked. */
 struct JoinNews {
   std::string stage;                                       ///< what is being done; empty: nothing
   double fraction = 0;                                     ///< of the stage
   std::optional<std::vector<mrpt::math::TPose2D>> frames;  ///< the latest on the way, if they are new
   std::optional<JoinOutcome> outcome;                      ///< once, at the end
+  std::optional<JoinedLandmarks> landmarks;                ///< the same of landmark submaps
   std::vector<std::string> log;                            ///< with the outcome: lines for log.txt
   std::string error;                                       ///< once, if it failed
 };
@@ -44,6 +53,7 @@ class JoinWorker {
 
   /** Throws std::logic_error if it is busy. */
   void start(JoinTask task);
+  void start(LandmarkJoinTask task);
 
   /** From start() until takeNews() has handed over the outcome or the error. */
   bool busy() const { return thread_.joinable(); }
@@ -55,7 +65,9 @@ class JoinWorker {
 
  private:
   class Listener;
+  void start(std::function<void()> work);
   void run(const JoinTask& task);
+  void run(const LandmarkJoinTask& task);
 
   std::thread thread_;
   std::atomic<bool> stop_{false}, done_{false};

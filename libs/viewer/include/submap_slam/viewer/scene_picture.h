@@ -15,7 +15,8 @@ void writePicture(const std::string& file, const mrpt::opengl::COpenGLScene& sce
 /** Distance of MRPT's orthogonal camera from which the shorter side of a picture shows that many m. */
 float zoomOf(double shorter_side_m);
 
-/** Makes the camera of a scene look straight down. */
-void lookFromAbove(mrpt::opengl::COpenGLScene& scene, const View& view);
+/** Draws only what is as near to the camera as a scene seen from that distance (m) can be: heights, of which
+ * the renderer tells few apart, then count. */
+void clipDepth(const mrpt::opengl::COpenGLScene& scene, float zoom);
 
 }  // namespace submap_slam

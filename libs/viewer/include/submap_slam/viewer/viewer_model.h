@@ -3,6 +3,7 @@
 #include <mrpt/math/TPose2D.h>
 #include <submap_slam/core/edits.h>
 #include <submap_slam/core/frame.h>
+#include <submap_slam/core/joined_landmarks.h>
 #include <submap_slam/core/joined_map.h>
 
 #include <cstddef>
@@ -18,12 +19,12 @@ enum class Layer { kGrids, kMap, kTrajectory, kFrames, kEllipses, kAccepted, kRe
 constexpr std::size_t kLayers = 8;
 const char* toString(Layer layer);
 
-/** A moment of the timeline: one scan of the log. */
+/** A moment of the timeline: one scan of the log, or one pose of the path of landmark submaps. */
 struct Moment {
   mrpt::Clock::time_point stamp;
   mrpt::math::TPose2D pose;           ///< T_w_robot as shown now (m, rad)
   std::optional<std::size_t> submap;  ///< position of the submap it belongs to
-  std::size_t node = 0;               ///< its node there; without submaps the frame of the log
+  std::size_t node = 0;               ///< its node there; without submaps the position in the log or path
 };
 
 /** What the viewer shows and what its user has done to it: content, timeline, selection, layers, edits. It
@@ -36,6 +37,13 @@ class ViewerModel {
   /** A log without submaps; it is shown along its odometry. */
   void setLog(std::vector<Frame> frames);
 
+  /** Landmark submaps and nothing else; they are shown along the chain of their end poses. */
+  void setLandmarks(LandmarkSubmaps submaps);
+
+  /** What a joiner made of the landmark submaps. Throws std::invalid_argument unless there is one frame more
+   * than submaps. */
+  void setJoinedLandmarks(JoinedLandmarks joined);
+
   /** More submaps behind those that are here; they follow the chain from the last frame. */
   void addSubmaps(const GridSubmaps& more);
 
@@ -46,11 +54,20 @@ class ViewerModel {
   /** Frames on the way to a result, T_w_s; other numbers than that of the submaps are ignored. */
   void setFrames(const std::vector<mrpt::math::TPose2D>& frames);
 
-  bool empty() const { return log_.empty() && submaps_.empty(); }
+  bool empty() const { return log_.empty() && submaps_.empty() && landmark_submaps_.empty(); }
   const std::vector<Frame>& log() const { return log_; }
   const GridSubmaps& submaps() const { return submaps_; }
   const JoinedMap& joined() const { return joined_; }
+  const LandmarkSubmaps& landmarkSubmaps() const { return landmark_submaps_; }
+  const JoinedLandmarks& joinedLandmarks() const { return joined_landmarks_; }
+
+  /** T_w_s of the submaps as shown now; of landmark submaps, and where the last one ends. */
   const std::vector<mrpt::math::TPose2D>& frames() const { return frames_; }
+
+  /** The same with covariances, as the joiners left them. */
+  const std::vector<mrpt::poses::CPosePDFGaussian>& joinedFrames() const {
+    return landmark_submaps_.empty() ? joined_.frames : joined_landmarks_.frames;
+  }
 
   // Timeline
   std::size_t moments() const;
@@ -109,6 +126,9 @@ class ViewerModel {
   GridSubmaps submaps_;
   std::vector<std::size_t> first_moment_;  // of each submap, and their number
   JoinedMap joined_;
+  LandmarkSubmaps landmark_submaps_;
+  JoinedLandmarks joined_landmarks_;
+  Trajectory landmark_path_;
   std::vector<mrpt::math::TPose2D> frames_;
   std::size_t cursor_ = 0;
   std::optional<std::size_t> selected_, selected_constraint_;

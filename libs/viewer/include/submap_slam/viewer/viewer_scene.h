@@ -14,7 +14,7 @@ struct View {
   double size = 10;  ///< what the shorter side of the picture shows
 };
 
-/** The model as 3D objects, seen from above. Grids are made once for each submap and moved afterwards. */
+/** The model as 3D objects, seen from above. Submaps are made once and moved afterwards. */
 class ViewerScene {
  public:
   ViewerScene();
@@ -30,12 +30,15 @@ class ViewerScene {
  private:
   void updateGrids(const ViewerModel& model);
   void updateMap(const ViewerModel& model);
+  void updateFeatures(const ViewerModel& model);
+  void updateLandmarks(const ViewerModel& model);
 
   mrpt::opengl::COpenGLScene::Ptr scene_;
-  mrpt::opengl::CSetOfObjects::Ptr grids_, map_, lines_;  // children of the scene, from below to above
+  mrpt::opengl::CSetOfObjects::Ptr grids_, map_, landmarks_, lines_;  // children, from below to above
   std::map<GridSubmap::Ptr, mrpt::opengl::CSetOfObjects::Ptr> grid_of_;
+  std::map<LandmarkSubmap::Ptr, mrpt::opengl::CSetOfObjects::Ptr> features_of_;
   std::size_t map_cells_ = 0;  // of the map that map_ shows
-  double map_objective_ = -1;
+  double map_objective_ = -1, landmarks_objective_ = -1;
 };
 
 }  // namespace submap_slam
