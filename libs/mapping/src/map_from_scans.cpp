@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "evidence_canvas.h"
+#include "beam_writer.h"
 #include "kept_scans.h"
+#include "tiled_evidence.h"
 
 namespace submap_slam {
 namespace {
@@ -32,7 +33,7 @@ std::vector<KeptScan> keptScans(const GridSubmaps& submaps, const JoinedMap& joi
   return kept;
 }
 
-/** Calls f(k, scans) for each submap k, in order; they are read by all threads. */
+/** Calls f(k, scans) for each submap k, in order, until it returns false; all threads read submaps. */
 template <class F>
 void forEachSubmap(const GridSubmaps& submaps, const JoinedMap& joined, const GridMapperParams& mapper, F f) {
   for (std::size_t first = 0; first < submaps.size(); first += kTogether) {
@@ -40,7 +41,8 @@ void forEachSubmap(const GridSubmaps& submaps, const JoinedMap& joined, const Gr
     std::vector<std::vector<KeptScan>> scans(count);
     tbb::parallel_for(std::size_t{0}, count,
                       [&](std::size_t i) { scans[i] = keptScans(submaps, joined, first + i, mapper); });
-    for (std::size_t i = 0; i < count; ++i) f(first + i, scans[i]);
+    for (std::size_t i = 0; i < count; ++i)
+      if (!f(first + i, scans[i])) return;
   }
 }
 
@@ -50,19 +52,16 @@ std::optional<EvidenceGrid> mapFromScans(const GridSubmaps& submaps, const Joine
                                          const GridMapperParams& mapper, double resolution) {
   EvidenceParams params = mapper.evidence;
   params.resolution = mapResolution(submaps, joined.frames, resolution);
-  Bounds bounds;
+  if (params.resolution <= 0) return EvidenceGrid();
+  TiledEvidence cells;
   bool complete = true;
   forEachSubmap(submaps, joined, mapper, [&](std::size_t k, const std::vector<KeptScan>& scans) {
-    complete = complete && (!scans.empty() || submaps[k]->evidenceSummary().stored_cells == 0);
-    for (const auto& scan : scans) addBounds(bounds, scan.points, scan.pose, params);
+    for (const auto& scan : scans) drawScan(scan.points, scan.pose, params, Eigen::Vector2d::Zero(), cells);
+    complete = !scans.empty() || submaps[k]->evidenceSummary().stored_cells == 0;
+    return complete;
   });
   if (!complete) return std::nullopt;
-  if (bounds.empty() || params.resolution <= 0) return EvidenceGrid();
-  EvidenceCanvas canvas(bounds, params);
-  forEachSubmap(submaps, joined, mapper, [&](std::size_t, const std::vector<KeptScan>& scans) {
-    for (const auto& scan : scans) canvas.draw(scan.points, scan.pose);
-  });
-  return canvas.cropped();
+  return cells.take(params.resolution);
 }
 
 }  // namespace submap_slam

@@ -12,8 +12,8 @@ namespace submap_slam {
  * turned lattices, which takes cells from walls, while here each beam is drawn once and into the cells of the
  * map.
  *
- * The beams are drawn with the parameters of `mapper`, two passes over the submaps are made, and few of their
- * scans are in memory at a time. The same for any number of threads.
+ * The beams are drawn with the parameters of `mapper`, and the scans of few submaps are in memory at a time.
+ * The same for any number of threads.
  * @param resolution m per cell; 0: as mapResolution() says
  * @return nothing if a submap with evidence keeps no scan
  * Throws std::invalid_argument if frames or nodes are not as many as those of the submaps. */
