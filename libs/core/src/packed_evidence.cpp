@@ -97,10 +97,8 @@ void PackedEvidence::writeTo(mrpt::serialization::CArchive& out) const {
       << static_cast<uint32_t>(ny_) << static_cast<uint32_t>(positions.size());
   if (positions.empty()) return;
   out.WriteBufferFixEndianness(positions.data(), positions.size());
-  for (const Block& block : cells_) {
-    out.WriteBufferFixEndianness(block.log_odds.data(), block.log_odds.size());
-    out.WriteBufferFixEndianness(block.hits.data(), block.hits.size());
-  }
+  static_assert(sizeof(Block) == 2 * kSide * kSide * sizeof(float), "blocks lie one behind the other");
+  out.WriteBufferFixEndianness(cells_.front().log_odds.data(), cells_.size() * sizeof(Block) / sizeof(float));
 }
 
 PackedEvidence PackedEvidence::readFrom(mrpt::serialization::CArchive& in) {
@@ -121,12 +119,10 @@ PackedEvidence PackedEvidence::readFrom(mrpt::serialization::CArchive& in) {
   for (std::size_t k = 0; k < blocks; ++k) {
     if (positions[k] >= packed.numbers_.size() || (k > 0 && positions[k] <= positions[k - 1]))
       throw std::runtime_error("evidence with blocks in the wrong places");
-    Block block;
-    in.ReadBufferFixEndianness(block.log_odds.data(), block.log_odds.size());
-    in.ReadBufferFixEndianness(block.hits.data(), block.hits.size());
     const auto columns = static_cast<uint32_t>(packed.columns_);
-    packed.store(block, static_cast<int>(positions[k] % columns), static_cast<int>(positions[k] / columns));
+    packed.store({}, static_cast<int>(positions[k] % columns), static_cast<int>(positions[k] / columns));
   }
+  in.ReadBufferFixEndianness(packed.cells_.front().log_odds.data(), blocks * sizeof(Block) / sizeof(float));
   return packed;
 }
 

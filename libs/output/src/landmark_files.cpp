@@ -5,6 +5,7 @@
 #include <mrpt/opengl/CSetOfLines.h>
 #include <mrpt/opengl/CSetOfObjects.h>
 #include <mrpt/opengl/stock_objects.h>
+#include <submap_slam/core/gzip.h>
 #include <submap_slam/output/landmark_files.h>
 
 #include <algorithm>
@@ -103,7 +104,7 @@ void writeLandmarkScene(const std::string& file, const JoinedLandmarks& joined, 
   scene.insert(landmarkObjects(joined.landmarks));
   scene.insert(frameObjects(joined.frames));
   scene.insert(pathLine(joined.frames.front().mean, path));
-  writeBytes(file, compressedArchive(scene));
+  writeBytes(file, gzippedArchive(scene, GzipLevel::kUsual));
 }
 
 }  // namespace submap_slam

@@ -10,6 +10,7 @@
 #include <mrpt/opengl/CText.h>
 #include <mrpt/opengl/stock_objects.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
+#include <submap_slam/core/gzip.h>
 #include <submap_slam/output/mrpt_files.h>
 
 #include <stdexcept>
@@ -101,7 +102,7 @@ mrpt::opengl::COpenGLScene::Ptr mapScene(const EvidenceGrid& map, const Trajecto
 }  // namespace
 
 void writeGridMap(const std::string& file, const EvidenceGrid& map) {
-  writeBytes(file, compressedArchive(map.toOccupancyGrid()));
+  writeBytes(file, gzippedArchive(map.toOccupancyGrid(), GzipLevel::kUsual));
 }
 
 void writeSimpleMap(const std::string& file, const GridSubmaps& submaps, const JoinedMap& joined) {
@@ -110,12 +111,12 @@ void writeSimpleMap(const std::string& file, const GridSubmaps& submaps, const J
   mrpt::maps::CSimpleMap map;
   for (std::size_t i = 0; i < submaps.size(); ++i)
     insertKeyNodes(*submaps[i], nodePosesOf(submaps, joined, i), joined.frames[i], map);
-  writeBytes(file, compressedArchive(map));
+  writeBytes(file, gzippedArchive(map, GzipLevel::kUsual));
 }
 
 void writeScene(const std::string& file, const EvidenceGrid& map, const Trajectory& trajectory,
                 const std::vector<CPosePDFGaussian>& frames) {
-  writeBytes(file, compressedArchive(*mapScene(map, trajectory, frames)));
+  writeBytes(file, gzippedArchive(*mapScene(map, trajectory, frames), GzipLevel::kUsual));
 }
 
 void writeSceneLog(const std::string& file, const EvidenceGrid& map, const Trajectory& trajectory,
@@ -123,7 +124,7 @@ void writeSceneLog(const std::string& file, const EvidenceGrid& map, const Traje
   mrpt::obs::CObservation3DScene observation;
   observation.timestamp = trajectory.empty() ? INVALID_TIMESTAMP : trajectory.back().stamp;
   observation.scene = mapScene(map, trajectory, frames);
-  writeBytes(file, compressedArchive(observation));
+  writeBytes(file, gzippedArchive(observation, GzipLevel::kUsual));
 }
 
 }  // namespace submap_slam

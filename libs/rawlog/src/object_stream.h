@@ -30,13 +30,6 @@ class ObjectStream {
    * it stays where it was while members hold more than one object. */
   uint64_t validBytes() const { return valid_bytes_; }
 
-  /** Byte of the file where the next object can be read on its own; empty if it shares a gzip member with the
-   * one before. */
-  std::optional<uint64_t> nextStart() const {
-    if (!at_member_end_) return std::nullopt;
-    return valid_bytes_;
-  }
-
   /** True if the file ends behind the last object, but without the proper end of its gzip member. */
   bool cutBehindLast();
 

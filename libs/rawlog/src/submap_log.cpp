@@ -1,7 +1,6 @@
 #include <fmt/format.h>
-#include <mrpt/io/CMemoryStream.h>
-#include <mrpt/serialization/CArchive.h>
 #include <submap_slam/core/errors.h>
+#include <submap_slam/core/gzip.h>
 #include <submap_slam/rawlog/submap_log.h>
 
 #include <filesystem>
@@ -86,23 +85,16 @@ GridSubmap::Ptr SubmapLogReader::next() {
 }
 
 uint64_t SubmapLogReader::validBytes() const { return impl_->valid_bytes; }
-std::optional<uint64_t> SubmapLogReader::nextStart() const { return impl_->stream.nextStart(); }
 double SubmapLogReader::fractionRead() const { return impl_->stream.fractionRead(); }
 
 namespace {
 
 /** All submaps of the file. */
-void readAll(const std::string& file, SubmapLogReader& reader, const std::shared_ptr<SubmapStore>& store,
-             GridSubmaps& submaps) {
+void readAll(SubmapLogReader& reader, const std::shared_ptr<SubmapStore>& store, GridSubmaps& submaps) {
   for (;;) {
-    const auto start = reader.nextStart();
     auto submap = reader.next();
     if (!submap) return;
-    if (store && start) {
-      store->takeOver(*submap, {file, *start});
-    } else if (store) {
-      store->takeOver(*submap);
-    }
+    if (store) store->takeOver(*submap);
     submaps.push_back(std::move(submap));
   }
 }
@@ -115,7 +107,7 @@ SubmapFollower::SubmapFollower(std::string file, std::shared_ptr<SubmapStore> st
 GridSubmaps SubmapFollower::readNew() {
   SubmapLogReader reader(file_, bytes_read_);
   GridSubmaps submaps;
-  readAll(file_, reader, store_, submaps);
+  readAll(reader, store_, submaps);
   bytes_read_ = reader.validBytes();
   return submaps;
 }
@@ -130,7 +122,7 @@ RecoveredSubmaps recoverSubmaps(const std::string& file, const std::shared_ptr<S
   SubmapLogReader reader(file);
   RecoveredSubmaps recovered;
   try {
-    readAll(file, reader, store, recovered.submaps);
+    readAll(reader, store, recovered.submaps);
   } catch (const InputError& error) {
     recovered.damage = error.what();
   }
@@ -199,28 +191,8 @@ void SubmapLogWriter::finish() {
   writeResumeState(file_, state_);
 }
 
-std::vector<uint8_t> gzipMember(const mrpt::serialization::CSerializable& object) {
-  mrpt::io::CMemoryStream raw;
-  constexpr uint64_t kGrowth = 1 << 22;  // its default, 4 kB, moves a large submap a thousand times
-  raw.setAllocBlockSize(kGrowth);
-  mrpt::serialization::archiveFrom(raw) << object;
-
-  z_stream deflater{};
-  const int gzip_window = 15 + 16, memory_level = 8;  // with these zlib writes a gzip header without a time
-  if (deflateInit2(&deflater, Z_BEST_SPEED, Z_DEFLATED, gzip_window, memory_level, Z_DEFAULT_STRATEGY) !=
-      Z_OK)
-    throw std::bad_alloc();
-  const auto raw_bytes = raw.getTotalBytesCount();
-  std::vector<uint8_t> member(deflateBound(&deflater, raw_bytes));
-  deflater.next_in = static_cast<Bytef*>(raw.getRawBufferData());
-  deflater.avail_in = static_cast<uInt>(raw_bytes);
-  deflater.next_out = member.data();
-  deflater.avail_out = static_cast<uInt>(member.size());
-  const int status = deflate(&deflater, Z_FINISH);
-  member.resize(deflater.total_out);
-  deflateEnd(&deflater);
-  if (status != Z_STREAM_END) throw OutputError("a submap is too large to be packed");
-  return member;
+std::string gzipMember(const mrpt::serialization::CSerializable& object) {
+  return gzippedArchive(object, GzipLevel::kFastest);
 }
 
 }  // namespace submap_slam

@@ -1,43 +1,60 @@
 #include <submap_slam/rawlog/submap_store.h>
 
 #include <fmt/format.h>
+#include <mrpt/io/CFileInputStream.h>
+#include <mrpt/io/CMemoryStream.h>
+#include <mrpt/serialization/CArchive.h>
 #include <submap_slam/core/errors.h>
-#include <submap_slam/rawlog/submap_log.h>
 
 #include <filesystem>
-#include <fstream>
+#include <optional>
 #include <utility>
 
 namespace submap_slam {
+namespace {
+
+using mrpt::serialization::CArchive;
+
+/** Not compressed: it is read again many times. */
+void writeBulk(CArchive&& out, const SubmapBulk& bulk) {
+  bulk.evidence->writeTo(out);
+  out << static_cast<uint64_t>(bulk.scans.size());
+  for (const SubmapScans& of_node : bulk.scans) {
+    out << static_cast<uint64_t>(of_node.size());
+    for (const auto& scan : of_node) out << *scan;
+  }
+}
+
+SubmapBulk readBulk(CArchive&& in) {
+  SubmapBulk bulk;
+  bulk.evidence = std::make_shared<const PackedEvidence>(PackedEvidence::readFrom(in));
+  bulk.scans.resize(in.ReadAs<uint64_t>());
+  for (SubmapScans& of_node : bulk.scans) {
+    of_node.resize(in.ReadAs<uint64_t>());
+    for (auto& scan : of_node) scan = in.ReadObject<mrpt::obs::CObservation2DRangeScan>();
+  }
+  return bulk;
+}
+
+}  // namespace
 
 /** One submap's bulk, kept or not. Lives as long as the submap. */
 class SubmapStore::Entry : public SubmapBulkSource {
  public:
-  Entry(std::shared_ptr<SubmapStore> owner, Home where, const GridSubmap& submap)
-      : store(std::move(owner)), home(std::move(where)), id(submap.id), nodes(submap.nodes.size()) {}
+  explicit Entry(std::shared_ptr<SubmapStore> owner) : store(std::move(owner)) {}
   ~Entry() override { store->forget(*this); }
   Entry(const Entry&) = delete;
   Entry& operator=(const Entry&) = delete;
 
   BulkPtr bulk() const override { return store->get(*this); }
 
-  BulkPtr readAgain() const {
-    const auto submap = SubmapLogReader(home.file, home.offset).next();
-    if (!submap || submap->id != id || submap->nodes.size() != nodes)
-      throw InputError(fmt::format("{}: was changed while it was in use: submap {} is no longer at byte {}",
-                                   home.file, id, home.offset));
-    return std::make_shared<const SubmapBulk>(submap->bulk());
-  }
-
   const std::shared_ptr<SubmapStore> store;
-  const Home home;
-  const uint32_t id;
-  const std::size_t nodes;
   mutable std::mutex reading;  // held by the one that reads it again, so that nobody else does
 
   // guarded by the store
   mutable BulkPtr kept;
   mutable std::size_t kept_bytes = 0;
+  mutable std::optional<uint64_t> spilled_at;          // byte of the spill file
   mutable std::weak_ptr<const SubmapBulk> in_use;      // what was dropped may still be in somebody's hands
   mutable std::list<const Entry*>::iterator position;  // in the list of the store, if kept
 };
@@ -55,26 +72,38 @@ std::shared_ptr<SubmapStore> SubmapStore::create(std::size_t memory_bytes, std::
 
 SubmapStore::~SubmapStore() {
   std::error_code ignored;
-  if (spilled_bytes_ > 0) std::filesystem::remove(spill_file_, ignored);
+  if (spill_.is_open()) std::filesystem::remove(spill_file_, ignored);
 }
 
-void SubmapStore::takeOver(GridSubmap& submap, const Home& home) {
-  const auto entry = std::make_shared<Entry>(shared_from_this(), home, submap);
+void SubmapStore::takeOver(GridSubmap& submap) {
+  const auto entry = std::make_shared<Entry>(shared_from_this());
   keep(*entry, std::make_shared<const SubmapBulk>(submap.bulk()));
   submap.storeAway(entry);
 }
 
-void SubmapStore::takeOver(GridSubmap& submap) { takeOver(submap, spill(submap)); }
+/** Writes what is kept of a submap to the end of the spill file, unless it is there already. */
+void SubmapStore::spill(const Entry& entry) {
+  if (entry.spilled_at) return;
+  mrpt::io::CMemoryStream bytes;
+  constexpr uint64_t kGrowth = 1 << 22;
+  bytes.setAllocBlockSize(kGrowth);
+  writeBulk(mrpt::serialization::archiveFrom(bytes), *entry.kept);
+  if (!spill_.is_open()) spill_.open(spill_file_, std::ios::binary | std::ios::trunc);
+  spill_.write(static_cast<const char*>(bytes.getRawBufferData()),
+               static_cast<std::streamsize>(bytes.getTotalBytesCount()));
+  if (!spill_.flush()) throw OutputError(fmt::format("{}: cannot be written", spill_file_));
+  entry.spilled_at = spilled_bytes_;
+  spilled_bytes_ += bytes.getTotalBytesCount();
+}
 
-SubmapStore::Home SubmapStore::spill(const GridSubmap& submap) {
-  const auto member = gzipMember(submap);
-  Home home{spill_file_, spilled_bytes_};
-  std::ofstream out(spill_file_, spilled_bytes_ == 0 ? std::ios::binary : std::ios::binary | std::ios::app);
-  out.write(reinterpret_cast<const char*>(member.data()), static_cast<std::streamsize>(member.size()));
-  out.close();
-  spilled_bytes_ += member.size();
-  if (!out) throw OutputError(fmt::format("{}: cannot be written", spill_file_));
-  return home;
+SubmapStore::BulkPtr SubmapStore::readAgain(const Entry& entry) const {
+  try {
+    mrpt::io::CFileInputStream in(spill_file_);
+    in.Seek(static_cast<int64_t>(*entry.spilled_at));
+    return std::make_shared<const SubmapBulk>(readBulk(mrpt::serialization::archiveFrom(in)));
+  } catch (const std::exception& error) {
+    throw InputError(fmt::format("{}: cannot be read again: {}", spill_file_, error.what()));
+  }
 }
 
 std::size_t SubmapStore::bytesKept() const {
@@ -91,7 +120,7 @@ SubmapStore::BulkPtr SubmapStore::get(const Entry& entry) {
   if (auto bulk = find(entry)) return bulk;
   const std::lock_guard<std::mutex> reading(entry.reading);
   if (auto bulk = find(entry)) return bulk;
-  BulkPtr bulk = entry.readAgain();
+  BulkPtr bulk = readAgain(entry);
   keep(entry, bulk);
   const std::lock_guard<std::mutex> lock(mutex_);
   ++times_read_;
@@ -125,6 +154,7 @@ void SubmapStore::keep(const Entry& entry, const BulkPtr& bulk) {
   const std::size_t budget = budget_(bytes_kept_);
   while (bytes_kept_ > budget) {
     const Entry& oldest = *recent_.back();
+    spill(oldest);
     recent_.pop_back();
     bytes_kept_ -= oldest.kept_bytes;
     oldest.kept.reset();

@@ -7,12 +7,11 @@
 #include <mrpt/obs/CSensoryFrame.h>
 #include <mrpt/serialization/CArchive.h>
 #include <submap_slam/core/errors.h>
+#include <submap_slam/core/gzip.h>
 #include <submap_slam/simulation/simulate.h>
-#include <zlib.h>
 
 #include <cmath>
 #include <fstream>
-#include <limits>
 
 namespace submap_slam {
 namespace {
@@ -92,28 +91,6 @@ TPose2D incrementTo(std::size_t k, const std::vector<Frame>& frames) {
   return *frames[k].odometry - *frames[k - 1].odometry;
 }
 
-/** In memory, because MRPT's gzip file stream does not tell when a disk is full, and its compression in
- * memory goes through a temporary file whose name processes that run side by side may share. */
-std::string gzip(const void* data, std::size_t size) {
-  if (size > std::numeric_limits<uInt>::max())
-    throw OutputError("a rawlog of more than 4 GB cannot be packed");
-  constexpr int kGzipWindowBits = 15 + 16, kMemoryLevel = 8;
-  z_stream stream{};
-  if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, kGzipWindowBits, kMemoryLevel,
-                   Z_DEFAULT_STRATEGY) != Z_OK)
-    throw OutputError("the compression of a rawlog cannot start");
-  std::string packed(deflateBound(&stream, size), '\0');
-  stream.next_in = static_cast<Bytef*>(const_cast<void*>(data));
-  stream.avail_in = static_cast<uInt>(size);
-  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-  stream.avail_out = static_cast<uInt>(packed.size());
-  const int result = deflate(&stream, Z_FINISH);
-  packed.resize(stream.total_out);
-  deflateEnd(&stream);
-  if (result != Z_STREAM_END) throw OutputError("a rawlog cannot be compressed");
-  return packed;
-}
-
 void writeFile(const std::string& file, const char* bytes, std::size_t size) {
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   if (!out) throw OutputError(file + ": cannot be opened for writing");
@@ -135,7 +112,9 @@ void writeRawlog(const std::string& file, const SimulatedLog& log, RawlogForm fo
     for (std::size_t k = 0; k < log.frames.size(); ++k)
       writeActionAndSensoryFrame(archive, log.frames[k], incrementTo(k, log.frames));
   }
-  const std::string packed = gzip(stream.getRawBufferData(), stream.getTotalBytesCount());
+  // In memory, because MRPT's gzip file stream does not tell when a disk is full.
+  const std::string packed =
+      gzip(stream.getRawBufferData(), stream.getTotalBytesCount(), GzipLevel::kSmallest);
   writeFile(file, packed.data(), packed.size());
 }
 

@@ -20,7 +20,7 @@ class DurableFile;
 class SubmapLogReader {
  public:
   /** Throws InputError if the file does not exist or is no file.
-   * @param offset where to start, from nextStart() of another reader */
+   * @param offset where to start, from validBytes() of another reader */
   explicit SubmapLogReader(const std::string& file, uint64_t offset = 0);
   ~SubmapLogReader();
   SubmapLogReader(SubmapLogReader&&) noexcept;
@@ -33,10 +33,6 @@ class SubmapLogReader {
   /** Size of the part of the file, from its start, that is known to hold whole submaps: those returned so
    * far, if their gzip member ended with them. */
   uint64_t validBytes() const;
-
-  /** Byte of the file where the next submap can be read on its own; empty if it shares a gzip member with the
-   * one before. */
-  std::optional<uint64_t> nextStart() const;
 
   /** Share of the file that was read, in [0, 1]. */
   double fractionRead() const;
@@ -127,8 +123,7 @@ class SubmapLogWriter {
   std::unique_ptr<DurableFile> out_;
 };
 
-/** One serialized object as a gzip member; the same object always gives the same bytes. Throws OutputError if
- * it has more than 4 GB. */
-std::vector<uint8_t> gzipMember(const mrpt::serialization::CSerializable& object);
+/** One serialized object as a gzip member; the same object always gives the same bytes. */
+std::string gzipMember(const mrpt::serialization::CSerializable& object);
 
 }  // namespace submap_slam

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <fstream>
 #include <functional>
 #include <list>
 #include <memory>
@@ -14,33 +15,25 @@ namespace submap_slam {
 
 /** Keeps evidence and scans of submaps within a budget of memory.
  *
- * What was used least recently is dropped and read again, when asked for, from the file that the submap came
- * from; a submap that cannot be read on its own there is copied to a spill file. Whatever the budget, readers
- * see the same values. Any number of threads may use submaps whose bulk is here.
+ * What was used least recently is written to a spill file and read again when asked for. Whatever the budget,
+ * readers see the same values. Any number of threads may use submaps whose bulk is here.
  */
 class SubmapStore : public std::enable_shared_from_this<SubmapStore> {
  public:
-  /** Where a submap can be read on its own, see SubmapLogReader::nextStart. */
-  struct Home {
-    std::string file;
-    uint64_t offset = 0;
-  };
-
   /** How many bytes may be kept, asked whenever something was read; the argument is how many are. */
   using Budget = std::function<std::size_t(std::size_t kept_bytes)>;
 
   /** @param budget     what readers still hold comes on top
-   * @param spill_file written when it is first needed, removed with the store */
+   * @param spill_file written when it is first needed, removed with the store; as large as what was dropped
+   */
   static std::shared_ptr<SubmapStore> create(Budget budget, std::string spill_file);
   static std::shared_ptr<SubmapStore> create(std::size_t memory_bytes, std::string spill_file);
   ~SubmapStore();
   SubmapStore(const SubmapStore&) = delete;
   SubmapStore& operator=(const SubmapStore&) = delete;
 
-  /** Takes the bulk of a submap, which can be read again from `home`. Not while another thread uses it. */
-  void takeOver(GridSubmap& submap, const Home& home);
-
-  /** The same for a submap that is in no file. Throws OutputError if the spill file cannot be written. */
+  /** Takes the bulk of a submap. Not while another thread uses it. Throws OutputError if the spill file
+   * cannot be written; the submap then is as it was. */
   void takeOver(GridSubmap& submap);
 
   /** Memory of what is kept now. */
@@ -58,13 +51,15 @@ class SubmapStore : public std::enable_shared_from_this<SubmapStore> {
   BulkPtr find(const Entry& entry);
   void keep(const Entry& entry, const BulkPtr& bulk);
   void forget(const Entry& entry);
-  Home spill(const GridSubmap& submap);
+  void spill(const Entry& entry);
+  BulkPtr readAgain(const Entry& entry) const;
 
   const Budget budget_;
   const std::string spill_file_;
-  uint64_t spilled_bytes_ = 0;
 
-  mutable std::mutex mutex_;        // guards what follows, and what the entries keep
+  mutable std::mutex mutex_;  // guards what follows, and what the entries keep
+  std::ofstream spill_;       // open once it was needed
+  uint64_t spilled_bytes_ = 0;
   std::list<const Entry*> recent_;  // those that keep something, the most recently used first
   std::size_t bytes_kept_ = 0, times_read_ = 0;
 };
