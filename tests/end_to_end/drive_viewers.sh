@@ -76,6 +76,7 @@ viewer=$!
 started+=("$viewer")
 fill_screen RawLogViewer
 picture rawlogviewer-start
+fill_screen RawLogViewer  # it may have sized itself again after the first time
 xdotool mousemove 120 250 click 1
 picture rawlogviewer
 close_viewer
@@ -86,6 +87,7 @@ viewer=$!
 started+=("$viewer")
 fill_screen SceneViewer
 picture sceneviewer-start
-xdotool mousemove 700 450 click --repeat 36 --delay 60 5  # the wheel, away from the map
+fill_screen SceneViewer
+xdotool mousemove 700 450 click --repeat 26 --delay 60 5  # the wheel, away from the map
 picture sceneviewer
 close_viewer
