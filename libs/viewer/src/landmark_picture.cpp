@@ -3,6 +3,7 @@
 #include <mrpt/opengl/CPointCloud.h>
 #include <mrpt/opengl/CSetOfLines.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace submap_slam {
@@ -55,7 +56,7 @@ mrpt::opengl::CSetOfObjects::Ptr featurePicture(const LandmarkSubmap& submap,
                                                 const mrpt::img::TColor& color) {
   EllipsePicture picture(color);
   for (std::size_t i = 0; i < submap.features.size(); ++i) {
-    const int k = static_cast<int>(3 + 2 * i);
+    const std::size_t k = 3 + 2 * i;
     const auto& Q = submap.covariance;
     picture.add(submap.features[i].x, submap.features[i].y, Q(k, k), Q(k, k + 1), Q(k + 1, k + 1));
   }

@@ -4,6 +4,8 @@
 #include <mrpt/opengl/CSetOfObjects.h>
 #include <submap_slam/core/joined_landmarks.h>
 
+#include <vector>
+
 namespace submap_slam {
 
 /** The features of a submap in its own frame: points with their 3-sigma ellipses, at height z = 0 (m). */
