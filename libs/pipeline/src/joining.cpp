@@ -62,11 +62,12 @@ void run(const SubmapJoiner& joiner, IncrementalJoin& at_work, const GridSubmaps
   result.stages.push_back(timer.record(joiner.name()));
 }
 
-/** Makes the map that a joiner left over. */
+/** Makes the map that a joiner left over, and gives the memory back that this leaves free. */
 void fuse(const GridSubmaps& submaps, const MapMaker& make_map, JoinOutcome& result) {
   const StageTimer timer;
   JoinedMap& joined = result.map;
   if (joined.map.observedCells() == 0) joined.map = make_map(submaps, joined);
+  malloc_trim(0);
   result.stages.push_back(timer.record("fuse"));
 }
 
