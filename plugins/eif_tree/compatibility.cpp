@@ -1,5 +1,6 @@
 #include "compatibility.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -65,6 +66,20 @@ std::vector<std::size_t> byDistance(const std::vector<Pairing>& pairings) {
     return pairings[a].distance2 < pairings[b].distance2;
   });
   return order;
+}
+
+/** Twice the logarithm of how much more likely the pairings are than as many new landmarks. */
+double evidenceFor(const Candidates& candidates, const std::vector<std::size_t>& set, double density) {
+  if (set.empty()) return 0;
+  std::vector<Eigen::Index> rows;
+  for (const std::size_t pairing : set)
+    for (Eigen::Index axis : {0, 1}) rows.push_back(2 * static_cast<Eigen::Index>(pairing) + axis);
+  const Eigen::MatrixXd covariance = candidates.covariance(rows, rows);
+  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
+  const Eigen::VectorXd whitened = factor.matrixL().solve(candidates.innovation(rows));
+  const double log_det = 2 * factor.matrixLLT().diagonal().array().log().sum();
+  return -whitened.squaredNorm() - log_det -
+         2 * static_cast<double>(set.size()) * std::log(2 * M_PI * density);
 }
 
 class BranchAndBound {
@@ -138,6 +153,20 @@ std::vector<std::size_t> nearestNeighbours(const Candidates& candidates) {
 
 std::vector<std::size_t> jointCompatibility(const Candidates& candidates) {
   return BranchAndBound(candidates).search();
+}
+
+std::vector<std::size_t> jointUnlessNearestExplain(const Candidates& candidates) {
+  auto nearest = nearestNeighbours(candidates), joint = jointCompatibility(candidates);
+  return 2 * joint.size() >= 3 * nearest.size() ? joint : nearest;
+}
+
+std::vector<std::size_t> convincing(const Candidates& candidates, const std::vector<std::size_t>& set,
+                                    double density) {
+  std::vector<std::size_t> strong;
+  for (const std::size_t pairing : set)
+    if (evidenceFor(candidates, {pairing}, density) >= 0) strong.push_back(pairing);
+  const bool together = evidenceFor(candidates, set, density) >= evidenceFor(candidates, strong, density);
+  return together ? set : strong;
 }
 
 }  // namespace submap_slam::landmark_joining

@@ -30,6 +30,19 @@ std::vector<std::size_t> nearestNeighbours(const Candidates& candidates);
  * @return indices of pairings */
 std::vector<std::size_t> jointCompatibility(const Candidates& candidates);
 
+/** The set of the joint search where it is larger by half than that of the nearest neighbours, otherwise the
+ * latter. Where landmarks stand in rows, a set that is shifted by one of them explains nearly as many, and
+ * more at the border of what is known: there the prediction says which is right, not the number.
+ * @return indices of pairings */
+std::vector<std::size_t> jointUnlessNearestExplain(const Candidates& candidates);
+
+/** The set without pairings that convince neither by themselves nor together: those that are, each by itself,
+ * less likely than a new landmark, if the whole set is less likely than the rest with new landmarks in their
+ * place. A single landmark near where an uncertain pose expects one closes no loop; several do.
+ * @param density of new landmarks (1/m²) */
+std::vector<std::size_t> convincing(const Candidates& candidates, const std::vector<std::size_t>& set,
+                                    double density);
+
 /** Largest joint squared distance, with as many degrees of freedom, that is as likely as a distance of
  * `gate2` is with two: the quantile of the χ² distribution for 1 − exp(−gate2 / 2), by Wilson and Hilferty
  * (for 99 % at most 0.2 % off, and the same as `gate2` for two degrees of freedom). */

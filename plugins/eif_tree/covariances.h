@@ -23,9 +23,8 @@ struct Estimate {
 /** The diagonal blocks of I⁻¹ by Takahashi's equations; after InformationForm::factorize() only. */
 Covariances marginalCovariances(const JointProblem& problem, const InformationForm& form);
 
-/** The covariance of some rows of the state (rows of I, see BlockPattern): the columns I⁻¹ e of these rows
- * are solved for and their rows kept, never the whole inverse (Huang, Wang, Dissanayake 2008, recovery of the
- * covariance). */
-Eigen::MatrixXd covarianceOf(InformationForm& form, const std::vector<int>& rows);
+/** The covariance of some rows of the state (rows of I, see BlockPattern), never the whole inverse; after
+ * InformationForm::factorize() only. */
+Eigen::MatrixXd covarianceOf(const InformationForm& form, const std::vector<int>& rows);
 
 }  // namespace submap_slam::landmark_joining

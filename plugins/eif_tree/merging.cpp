@@ -2,11 +2,10 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
-#include <utility>
+#include <vector>
 
 #include "compatibility.h"
 #include "covariances.h"
@@ -19,45 +18,48 @@ struct Twins {
   double distance2 = 0;
 };
 
-/** Pairs of landmarks that one submap holds both of. */
-std::set<std::pair<int, int>> seenTogether(const JointProblem& problem,
-                                           const std::vector<std::pair<int, int>>& near) {
-  std::vector<std::vector<std::size_t>> submaps_of(problem.landmark_count);
+using Partners = std::vector<std::vector<int>>;  ///< of each landmark, of a higher index
+
+std::vector<std::vector<std::size_t>> submapsOfLandmarks(const JointProblem& problem) {
+  std::vector<std::vector<std::size_t>> submaps(problem.landmark_count);
   for (std::size_t k = 0; k < problem.submaps(); ++k)
-    for (const int m : problem.landmarks[k]) submaps_of[static_cast<std::size_t>(m)].push_back(k);
-  std::set<std::pair<int, int>> together;
-  for (const auto& [a, b] : near) {
-    const auto &in_a = submaps_of[static_cast<std::size_t>(a)],
-               &in_b = submaps_of[static_cast<std::size_t>(b)];
-    std::vector<std::size_t> both;
-    std::set_intersection(in_a.begin(), in_a.end(), in_b.begin(), in_b.end(), std::back_inserter(both));
-    if (!both.empty()) together.emplace(a, b);
-  }
-  return together;
+    for (const int m : problem.landmarks[k]) submaps[static_cast<std::size_t>(m)].push_back(k);
+  return submaps;
 }
 
-/** Pairs that may agree as far as their marginal covariances tell: that of the difference of two landmarks is
- * at most twice the sum of theirs. */
-std::vector<std::pair<int, int>> nearPairs(const JointState& state, const Covariances& covariances,
-                                           double gate2) {
-  std::vector<std::pair<int, int>> pairs;
+bool haveOneInCommon(const std::vector<std::size_t>& a, const std::vector<std::size_t>& b) {
+  for (auto i = a.begin(), k = b.begin(); i != a.end() && k != b.end(); *i < *k ? ++i : ++k)
+    if (*i == *k) return true;
+  return false;
+}
+
+/** Pairs that may agree as far as their marginal covariances tell (that of the difference of two landmarks is
+ * at most twice the sum of theirs), and that no submap holds both of. */
+Partners possibleTwins(const JointProblem& problem, const JointState& state, const Covariances& covariances,
+                       double gate2) {
+  const auto submaps = submapsOfLandmarks(problem);
+  Partners partners(problem.landmark_count);
   for (std::size_t a = 0; a < state.landmarks.size(); ++a)
     for (std::size_t b = a + 1; b < state.landmarks.size(); ++b) {
       const double spread = covariances.landmarks[a].trace() + covariances.landmarks[b].trace();
-      if ((state.landmarks[a] - state.landmarks[b]).squaredNorm() <= 2 * gate2 * spread)
-        pairs.emplace_back(static_cast<int>(a), static_cast<int>(b));
+      if ((state.landmarks[a] - state.landmarks[b]).squaredNorm() <= 2 * gate2 * spread &&
+          !haveOneInCommon(submaps[a], submaps[b]))
+        partners[a].push_back(static_cast<int>(b));
     }
-  return pairs;
+  return partners;
 }
 
-double distance2Between(InformationForm& form, const JointState& state, int a, int b) {
-  const int row_a = form.pattern().landmarkRow(static_cast<std::size_t>(a)),
-            row_b = form.pattern().landmarkRow(static_cast<std::size_t>(b));
-  const Eigen::Matrix4d c = covarianceOf(form, {row_a, row_a + 1, row_b, row_b + 1});
-  const Eigen::Matrix2d s = c.topLeftCorner<2, 2>() + c.bottomRightCorner<2, 2>() - c.topRightCorner<2, 2>() -
-                            c.bottomLeftCorner<2, 2>();
-  const Point d = state.landmarks[static_cast<std::size_t>(a)] - state.landmarks[static_cast<std::size_t>(b)];
-  return d.dot(s.inverse() * d);
+/** Half inverses of the landmarks that are in a pair; empty for the others. */
+std::vector<HalfInverse> halfInverses(const InformationForm& form, const Partners& partners) {
+  std::vector<bool> needed(partners.size());
+  for (std::size_t a = 0; a < partners.size(); ++a)
+    for (const int b : partners[a]) needed[a] = needed[static_cast<std::size_t>(b)] = true;
+  std::vector<HalfInverse> halves(partners.size());
+  for (std::size_t m = 0; m < partners.size(); ++m) {
+    const int row = form.pattern().landmarkRow(m);
+    if (needed[m]) halves[m] = form.cholesky().halfInverse({row, row + 1});
+  }
+  return halves;
 }
 
 /** Pairs within the gate in the order of their distance, each landmark in one of them. */
@@ -66,13 +68,19 @@ std::vector<Twins> findTwins(const JointProblem& problem, const JointState& stat
   form.lineariseAll(state);
   std::vector<Twins> twins;
   if (!form.factorize()) return twins;
-  const auto near = nearPairs(state, marginalCovariances(problem, form), gate2);
-  const auto together = seenTogether(problem, near);
-  for (const auto& pair : near) {
-    if (together.count(pair) > 0) continue;
-    const double distance2 = distance2Between(form, state, pair.first, pair.second);
-    if (distance2 <= gate2) twins.push_back({pair.first, pair.second, distance2});
-  }
+  const Covariances covariances = marginalCovariances(problem, form);
+  const Partners partners = possibleTwins(problem, state, covariances, gate2);
+  const auto halves = halfInverses(form, partners);
+  for (std::size_t a = 0; a < partners.size(); ++a)
+    for (const int partner : partners[a]) {
+      const auto b = static_cast<std::size_t>(partner);
+      const Eigen::Matrix2d cross = inverseBetween(halves[a], halves[b]);
+      const Eigen::Matrix2d s =
+          covariances.landmarks[a] + covariances.landmarks[b] - cross - cross.transpose();
+      const Point d = state.landmarks[a] - state.landmarks[b];
+      const double distance2 = d.dot(s.inverse() * d);
+      if (distance2 <= gate2) twins.push_back({static_cast<int>(a), partner, distance2});
+    }
   std::stable_sort(twins.begin(), twins.end(),
                    [](const Twins& a, const Twins& b) { return a.distance2 < b.distance2; });
   std::set<int> used;

@@ -30,7 +30,7 @@ std::vector<Disc> discsOf(const Pose& start, const Eigen::Matrix3d& c_start, con
 
 }  // namespace
 
-Prediction predictLandmarks(InformationForm& form, const JointState& state, const Eigen::VectorXd& z,
+Prediction predictLandmarks(const InformationForm& form, const JointState& state, const Eigen::VectorXd& z,
                             double margin_m) {
   const std::size_t last = state.ends.size() - 1;
   const Pose& start = state.ends[last];

@@ -15,7 +15,7 @@ struct Prediction {
 /** Predicts the landmarks that are within `margin_m` of one of the submap's features, and as far beyond as
  * that feature is uncertain because the start pose is. `form` must be factorized.
  * @param z features in the submap's frame, two rows for each */
-Prediction predictLandmarks(InformationForm& form, const JointState& state, const Eigen::VectorXd& z,
+Prediction predictLandmarks(const InformationForm& form, const JointState& state, const Eigen::VectorXd& z,
                             double margin_m);
 
 /** Pairings of features with predicted landmarks within the gate, and for each feature the squared distance

@@ -1,5 +1,7 @@
 #include "sparse_cholesky.h"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace submap_slam::landmark_joining {
@@ -32,9 +34,14 @@ SparseCholesky::SparseCholesky(Eigen::SparseMatrix<double>& pattern) {
   common_.postorder = 1;
   cholmod_sparse view = viewOf(pattern);
   factor_ = cholmod_analyze(&view, &common_);
-  if (factor_ != nullptr) return;
-  cholmod_finish(&common_);
-  throw std::runtime_error("CHOLMOD cannot analyse the pattern of the information matrix");
+  if (factor_ == nullptr) {
+    cholmod_finish(&common_);
+    throw std::runtime_error("CHOLMOD cannot analyse the pattern of the information matrix");
+  }
+  const auto* order = static_cast<const int*>(factor_->Perm);
+  position_.resize(factor_->n);
+  for (std::size_t column = 0; column < factor_->n; ++column)
+    position_[static_cast<std::size_t>(order[column])] = static_cast<int>(column);
 }
 
 SparseCholesky::~SparseCholesky() {
@@ -67,6 +74,59 @@ Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& b) {
   Eigen::MatrixXd x = Eigen::Map<Eigen::MatrixXd>(static_cast<double*>(solution->x), b.rows(), b.cols());
   cholmod_free_dense(&solution, &common_);
   return x;
+}
+
+/** The columns and all that follow them in the elimination tree, ascending. */
+std::vector<int> SparseCholesky::pathsToRoot(const std::vector<int>& columns) const {
+  const auto *start = static_cast<const int*>(factor_->p), *count = static_cast<const int*>(factor_->nz),
+             *row = static_cast<const int*>(factor_->i);
+  std::vector<bool> met(factor_->n);
+  std::vector<int> path;
+  for (int column : columns)
+    while (!met[static_cast<std::size_t>(column)]) {
+      met[static_cast<std::size_t>(column)] = true;
+      path.push_back(column);
+      if (count[column] > 1) column = row[start[column] + 1];  // the first row below the diagonal
+    }
+  std::sort(path.begin(), path.end());
+  return path;
+}
+
+HalfInverse SparseCholesky::halfInverse(const std::vector<int>& rows) const {
+  const auto *start = static_cast<const int*>(factor_->p), *count = static_cast<const int*>(factor_->nz),
+             *row = static_cast<const int*>(factor_->i);
+  const auto* value = static_cast<const double*>(factor_->x);
+  std::vector<int> columns;
+  for (const int r : rows) columns.push_back(position_[static_cast<std::size_t>(r)]);
+  HalfInverse half;
+  half.at = pathsToRoot(columns);
+  std::vector<Eigen::Index> held(factor_->n);
+  for (std::size_t k = 0; k < half.at.size(); ++k)
+    held[static_cast<std::size_t>(half.at[k])] = static_cast<Eigen::Index>(k);
+  auto& w = half.values;
+  w.setZero(static_cast<Eigen::Index>(half.at.size()), static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    w(held[static_cast<std::size_t>(columns[i])], static_cast<Eigen::Index>(i)) = 1;
+  for (Eigen::Index k = 0; k < w.rows(); ++k) {
+    const int column = half.at[static_cast<std::size_t>(k)];
+    for (int e = start[column] + 1; e < start[column] + count[column]; ++e)
+      w.row(held[static_cast<std::size_t>(row[e])]) -= value[e] * w.row(k);
+    w.row(k) /= std::sqrt(value[start[column]]);
+  }
+  return half;
+}
+
+Eigen::MatrixXd inverseBetween(const HalfInverse& a, const HalfInverse& b) {
+  Eigen::MatrixXd block = Eigen::MatrixXd::Zero(a.values.cols(), b.values.cols());
+  for (std::size_t i = 0, k = 0; i < a.at.size() && k < b.at.size();) {
+    if (a.at[i] == b.at[k])
+      block.noalias() +=
+          a.values.row(static_cast<Eigen::Index>(i)).transpose() * b.values.row(static_cast<Eigen::Index>(k));
+    const int at_a = a.at[i], at_b = b.at[k];
+    if (at_a <= at_b) ++i;
+    if (at_b <= at_a) ++k;
+  }
+  return block;
 }
 
 SparseFactor SparseCholesky::factor() const {

@@ -1,6 +1,7 @@
 #include "unknown_association.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "merging.h"
@@ -28,6 +29,14 @@ SequentialOptions whileAssociating() {
   options.gauss_newton.max_step_m = 0.02;
   options.gauss_newton.max_step_rad = 1e-3;
   return options;
+}
+
+/** Features in a square metre (1/m²) of the disc about the start pose that holds them. */
+double densityOf(const Eigen::VectorXd& z) {
+  double radius2 = 1;
+  for (Eigen::Index row = 0; row < z.size(); row += 2)
+    radius2 = std::max(radius2, z.segment<2>(row).squaredNorm());
+  return static_cast<double>(z.size() / 2) / (M_PI * radius2);
 }
 
 class SequentialAssociation {
@@ -111,8 +120,11 @@ std::vector<Decision> SequentialAssociation::decide(const LandmarkSubmap& submap
     if (comparison.nearest2[i] <= options_.new_gate) decisions[i].kind = Kind::kDropped;
   }
   const auto& candidates = comparison.candidates;
-  for (const std::size_t i :
-       options_.joint_search ? jointCompatibility(candidates) : nearestNeighbours(candidates)) {
+  const auto agreeing =
+      options_.joint_search ? jointUnlessNearestExplain(candidates) : nearestNeighbours(candidates);
+  for (const std::size_t i : agreeing)
+    decisions[static_cast<std::size_t>(candidates.pairings[i].feature)].kind = Kind::kNew;
+  for (const std::size_t i : convincing(candidates, agreeing, densityOf(z))) {
     const Pairing& pairing = candidates.pairings[i];
     decisions[static_cast<std::size_t>(pairing.feature)] = {Kind::kMatched, pairing.landmark,
                                                             pairing.distance2};

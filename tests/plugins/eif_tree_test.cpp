@@ -237,6 +237,11 @@ TEST(EifTree, CovarianceOfSomeRowsIsASubMatrixOfTheDenseInverse) {
   const std::vector<int> rows{pose, pose + 1, pose + 2, landmark, landmark + 1};
   const Eigen::MatrixXd expected = whole(rows, rows);
   EXPECT_LT((covarianceOf(form, rows) - expected).norm(), 1e-8 * expected.norm());
+
+  const auto a = form.cholesky().halfInverse({pose, pose + 1, pose + 2});
+  const auto b = form.cholesky().halfInverse({landmark, landmark + 1});
+  const Eigen::MatrixXd between = whole.block(pose, landmark, 3, 2);
+  EXPECT_LT((inverseBetween(a, b) - between).norm(), 1e-8 * expected.norm());
 }
 
 TEST(EifTree, ALargeLoopIsClosedByTheTree) {

@@ -84,6 +84,36 @@ TEST(Compatibility, JointSearchSeesACommonShiftThatNearestNeighboursDoNot) {
   EXPECT_THAT(jointCompatibility(shifted()), UnorderedElementsAre(0u, 1u, 3u));
 }
 
+TEST(Compatibility, TheJointSearchDecidesWhereItExplainsMuchMore) {
+  EXPECT_THAT(jointUnlessNearestExplain(shifted()), UnorderedElementsAre(0u, 1u, 3u));
+}
+
+/** Five features in a row, a landmark every 3 m: as predicted the first four are known; shifted by one, all.
+ */
+TEST(Compatibility, InARowOfLandmarksThePredictionDecidesNotTheNumber) {
+  std::vector<Pairing> pairings;
+  std::vector<double> innovations;
+  for (int i = 0; i < 4; ++i) pairings.push_back({i, i, 0}), innovations.push_back(0.4);
+  for (int i = 0; i < 5; ++i) pairings.push_back({i, i - 1, 0}), innovations.push_back(-2.6);
+  const auto c = onALine(pairings, innovations, 4, 0.01);
+  EXPECT_EQ(jointCompatibility(c).size(), 5u);
+  EXPECT_THAT(jointUnlessNearestExplain(c), UnorderedElementsAre(0u, 1u, 2u, 3u));
+}
+
+TEST(Compatibility, OneUncertainPairingConvincesNobodyButSeveralDo) {
+  constexpr double kDensity = 0.1;
+  const auto one = onALine({{0, 0, 0}}, {1}, 4, 0.01);
+  EXPECT_TRUE(convincing(one, {0}, kDensity).empty());
+  EXPECT_THAT(convincing(one, {0}, 1e-3), ElementsAre(0u)) << "where landmarks are rare it does";
+  const auto three = onALine({{0, 0, 0}, {1, 1, 0}, {2, 2, 0}}, {1, 1, 1}, 4, 0.01);
+  EXPECT_THAT(convincing(three, {0, 1, 2}, kDensity), ElementsAre(0u, 1u, 2u));
+  const auto contradicting = onALine({{0, 0, 0}, {1, 1, 0}}, {1, -1}, 4, 0.01);
+  EXPECT_TRUE(convincing(contradicting, {0, 1}, kDensity).empty());
+  const auto precise = onALine({{0, 0, 0}}, {0.1}, 0.01, 0.01);
+  EXPECT_THAT(convincing(precise, {0}, kDensity), ElementsAre(0u));
+  EXPECT_TRUE(convincing({}, {}, kDensity).empty());
+}
+
 TEST(Compatibility, ALandmarkIsMatchedOnce) {
   const auto c = onALine({{0, 5, 0}, {1, 5, 0}}, {0.2, 0.1}, 1, 0.01);
   EXPECT_THAT(nearestNeighbours(c), ElementsAre(1u));
