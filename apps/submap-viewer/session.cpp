@@ -74,7 +74,7 @@ JoinerChain Session::joinersOf(std::size_t choice) const {
 
 std::shared_ptr<LandmarkJoiner> Session::landmarkJoinerOf(std::size_t choice) const {
   if (choice == 0) return config_->landmarkJoiner();
-  const auto joiner = joinersOfKind<LandmarkJoiner>(*config_).at(choice - 1);
+  auto joiner = joinersOfKind<LandmarkJoiner>(*config_).at(choice - 1);
   joiner->validate();
   return joiner;
 }
