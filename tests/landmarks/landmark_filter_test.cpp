@@ -176,10 +176,19 @@ double meanNees(const LandmarkMapperParams& params, int runs) {
 
 TEST(LandmarkFilter, IsConsistent) {
   EXPECT_NEAR(meanNees(paramsOf("ekf"), 40), 1, 0.15);
-  // With 200 particles it is 1.5: too few to hold all that is possible. It tends to 1 with their number.
+  // It tends to 1 with the number of particles; what it is with few, see below.
   LandmarkMapperParams rbpf = paramsOf("rbpf");
   rbpf.particles.particles = 1000;
   EXPECT_NEAR(meanNees(rbpf, 20), 1, 0.25);
+}
+
+/** A known weakness: with the particles of the default the covariance is too small, by a factor of about 2.6.
+ * The filter that is the default has none of it. */
+TEST(LandmarkFilter, TheDefaultNumberOfParticlesIsTooCertainWithinBounds) {
+  LandmarkMapperParams rbpf = paramsOf("rbpf");
+  rbpf.particles.particles = LandmarkParticleParams{}.particles;
+  EXPECT_LT(meanNees(rbpf, 20), 4);
+  EXPECT_EQ(LandmarkMapperParams{}.method, "ekf");
 }
 
 TEST(LandmarkFilter, FindsTheSameFeaturesWithoutIds) {
