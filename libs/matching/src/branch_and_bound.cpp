@@ -62,7 +62,7 @@ class WindowSearch {
   };
   LookUp lookUpOf(const Branch& branch);
   uint32_t bound(const Branch& branch);
-  std::array<uint32_t, 4> fourBounds(const Branch& branch, int step, uint32_t least);
+  std::array<uint32_t, 4> fourBounds(const Branch& branch, uint32_t least);
   bool isInside(const Branch& branch) const {
     return branch.dx <= 2 * half_cells_ && branch.dy <= 2 * half_cells_ && branch.turn <= 2 * half_turns_;
   }
@@ -134,19 +134,24 @@ uint32_t WindowSearch::bound(const Branch& branch) {
   return sum;
 }
 
-/** Bounds of a branch and of those `step` to the right, up, and both; all 0 as soon as it is clear that none
- * reaches `least`. */
-std::array<uint32_t, 4> WindowSearch::fourBounds(const Branch& branch, int step, uint32_t least) {
-  constexpr std::size_t kTogether = 64;
+/** Bounds of a branch and of those half a step of its parent to the right, up, and both; all 0 as soon as it
+ * is clear that none reaches `least`. */
+std::array<uint32_t, 4> WindowSearch::fourBounds(const Branch& branch, uint32_t least) {
+  constexpr std::size_t kTogether = 64;  // whose scores add up to less than 2¹⁶
+  constexpr uint32_t kLowBytes = 0x00ff00ff;
   const LookUp at = lookUpOf(branch);
   std::array<uint32_t, 4> sums{};
   for (std::size_t begin = 0; begin < at.cells.size(); begin += kTogether) {
     const std::size_t left = at.cells.size() - begin;
     if (*std::max_element(sums.begin(), sums.end()) + kBestScore * left < least) return {};
+    uint32_t lefts = 0, rights = 0;  // two sums in each, the lower cell's in the lower half
     for (std::size_t k = begin; k < begin + std::min(left, kTogether); ++k) {
-      const auto scores = at.level.fourScores(at.cells[k].column + at.dx, at.cells[k].row + at.dy, step);
-      for (std::size_t i = 0; i < 4; ++i) sums[i] += scores[i];
+      const uint32_t scores = at.level.fourScores(at.cells[k].column + at.dx, at.cells[k].row + at.dy);
+      lefts += scores & kLowBytes;
+      rights += (scores >> 8) & kLowBytes;
     }
+    sums[0] += lefts & 0xffff, sums[1] += rights & 0xffff;
+    sums[2] += lefts >> 16, sums[3] += rights >> 16;
   }
   return sums;
 }
@@ -167,7 +172,7 @@ std::vector<Branch> WindowSearch::partsOf(const Branch& branch, uint32_t least) 
   --first.level;
   for (; first.turn < branch.turn + (1 << branch.turnLevel()); first.turn += 1 << first.turnLevel()) {
     if (!isInside(first)) continue;
-    const auto sums = fourBounds(first, half, least);
+    const auto sums = fourBounds(first, least);
     for (int i = 0; i < 4; ++i) {
       Branch part = first;
       part.dx += i % 2 * half;

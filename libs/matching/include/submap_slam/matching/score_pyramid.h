@@ -3,7 +3,6 @@
 #include <submap_slam/core/packed_evidence.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -33,39 +32,42 @@ class ScorePyramid {
   double column(double x) const { return (x - x_min_) / resolution_; }
   double row(double y) const { return (y - y_min_) / resolution_; }
 
-  /** One level. */
+  /** One level. Each entry holds the scores of four cells, one in each byte, because a search that halves a
+   * square asks for them together: from the lowest byte on those of (column, row), (column + step, row),
+   * (column, row + step) and (column + step, row + step). */
   struct Level {
+    int step = 1;    ///< cells of the finest level
     int margin = 0;  ///< cells before column and row 0
     unsigned columns = 0, rows = 0;
-    std::vector<uint8_t> scores;  ///< row by row; with one more column and one more row, which are unknown
+    std::vector<uint32_t> fours;  ///< row by row; with one more column and one more row, which are unknown
 
-    /** 255 · the best score of the 2^level × 2^level cells from (column, row) up. */
-    uint8_t score(int column, int row) const { return scores[rowOffset(row) + columnOffset(column)]; }
-
-    /** Those of (column, row), (column + step, row), (column, row + step) and (column + step, row + step). */
-    std::array<uint8_t, 4> fourScores(int column, int row, int step) const {
-      const std::size_t left = columnOffset(column), right = columnOffset(column + step);
-      const uint8_t *low = &scores[rowOffset(row)], *high = &scores[rowOffset(row + step)];
-      return {low[left], low[right], high[left], high[right]};
+    /** Cells have integer coordinates of any size; 255 · the best score of the cells from (column, row) up.
+     */
+    uint32_t fourScores(int column, int row) const {
+      return fours[indexOf(row, rows) * (std::size_t{columns} + 1) + indexOf(column, columns)];
     }
+    uint8_t score(int column, int row) const { return static_cast<uint8_t>(fourScores(column, row)); }
 
    private:
-    friend class ScorePyramid;
-    std::size_t stride() const { return std::size_t{columns} + 1; }
-    std::size_t columnOffset(int column) const {  // what lies before the first wraps around
-      return std::min(static_cast<unsigned>(column + margin), columns);
-    }
-    std::size_t rowOffset(int row) const {
-      return std::min(static_cast<unsigned>(row + margin), rows) * stride();
+    std::size_t indexOf(int place, unsigned count) const {  // what lies before the first wraps around
+      return std::min(static_cast<unsigned>(place + margin), count);
     }
   };
   const Level& level(int level) const { return levels_[static_cast<std::size_t>(level)]; }
   uint8_t score(int level, int column, int row) const { return this->level(level).score(column, row); }
 
  private:
-  Level finest(const PackedEvidence& evidence) const;
-  Level coarser(const Level& fine, int step) const;
-  Level unknownLevel(int margin, unsigned columns, unsigned rows) const;
+  /** Scores of a level, one by one. */
+  struct Layer {
+    int margin = 0;
+    unsigned columns = 0, rows = 0;
+    std::vector<uint8_t> scores;  // row by row
+  };
+  Layer unknownLayer(int margin, unsigned columns, unsigned rows) const;
+  Layer finest(const PackedEvidence& evidence) const;
+  Layer coarser(const Layer& fine, int step) const;
+  Level withNeighbours(const Layer& layer, int step) const;
+  uint8_t scoreIn(const Layer& layer, int column, int row) const;
 
   double resolution_, x_min_, y_min_;
   uint8_t unknown_;
