@@ -97,6 +97,7 @@ HalfInverse SparseCholesky::halfInverse(const std::vector<int>& rows) const {
              *row = static_cast<const int*>(factor_->i);
   const auto* value = static_cast<const double*>(factor_->x);
   std::vector<int> columns;
+  columns.reserve(rows.size());
   for (const int r : rows) columns.push_back(position_[static_cast<std::size_t>(r)]);
   HalfInverse half;
   half.at = pathsToRoot(columns);

@@ -36,7 +36,7 @@ double densityOf(const Eigen::VectorXd& z) {
   double radius2 = 1;
   for (Eigen::Index row = 0; row < z.size(); row += 2)
     radius2 = std::max(radius2, z.segment<2>(row).squaredNorm());
-  return static_cast<double>(z.size() / 2) / (M_PI * radius2);
+  return static_cast<double>(z.size()) / (2 * M_PI * radius2);
 }
 
 class SequentialAssociation {
