@@ -26,6 +26,7 @@ if(SUBMAP_SLAM_SANITIZE)
   target_compile_options(submap_slam_options INTERFACE
     -fsanitize=${SUBMAP_SLAM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all
     -fno-sanitize=alignment  # of MRPT's virtual bases gcc asks the alignment of whole objects
+    -Wno-subobject-linkage     # several sources are read as one, whose namespaces without a name gcc takes for headers'
     -Wno-maybe-uninitialized)  # sanitized code confuses that warning, as gcc's manual says
   target_link_options(submap_slam_options INTERFACE -fsanitize=${SUBMAP_SLAM_SANITIZE})
   # Under a sanitizer Eigen would align by itself, and free what MRPT's libraries, built without one, allocate.
