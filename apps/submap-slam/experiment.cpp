@@ -165,7 +165,7 @@ Experiment loadExperiment(const std::string& file, const std::vector<std::string
   const fs::path folder = data_folder.empty() ? fs::path(file).parent_path() : fs::path(data_folder);
   try {
     return readExperiment(description, overrides, folder);
-  } catch (const LineError&) {
+  } catch (const ExperimentLineError&) {
     throw;
   } catch (const ConfigError& e) {
     throw ConfigError(fmt::format("{}: {}", file, e.what()));

@@ -11,7 +11,7 @@
 namespace submap_slam {
 
 /** A ConfigError that says in which line already. */
-struct LineError : ConfigError {
+struct ExperimentLineError : ConfigError {
   using ConfigError::ConfigError;
 };
 
@@ -35,7 +35,7 @@ class ExperimentFile {
     try {
       read();
     } catch (const ConfigError& e) {
-      throw LineError(fmt::format("{}:{}: {}", name_, entry.line, e.what()));
+      throw ExperimentLineError(fmt::format("{}:{}: {}", name_, entry.line, e.what()));
     }
   }
 

@@ -37,9 +37,11 @@ void printSubmap(const GridSubmap& submap, const EvidenceSummary& grid, double o
 }
 
 int runInfo(const std::string& file) {
-  const std::string spill_file =
-      (std::filesystem::temp_directory_path() / fmt::format("submap-slam-{}.spill", getpid())).string();
-  const auto store = SubmapStore::create(submapBudget(JoiningParams{}.memory), spill_file);
+  namespace fs = std::filesystem;
+  const fs::path on_disk = "/var/tmp";  // where /tmp may be memory
+  const fs::path folder = fs::is_directory(on_disk) ? on_disk : fs::temp_directory_path();
+  const auto store =
+      SubmapStore::create(submapBudget(JoiningParams{}.memory), (folder / "submap-slam").string());
   const RecoveredSubmaps read = readUsableSubmaps(file, store);
   const GridSubmaps& submaps = read.submaps;
   const auto overlaps = overlapShares(submaps, chainSubmaps(submaps).frames);

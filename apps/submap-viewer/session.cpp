@@ -10,6 +10,7 @@
 #include <submap_slam/pipeline/run_files.h>
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 namespace submap_slam {
@@ -55,9 +56,9 @@ std::vector<std::shared_ptr<Kind>> joinersOfKind(const Configuration& config) {
 }  // namespace
 
 std::vector<std::string> Session::joinerNames() const {
-  const auto& chosen = ofLandmarks() ? config_->joining.landmark_joiner : config_->joining.chain;
-  std::vector<std::string> names{(ofLandmarks() ? "landmarks: " : "chain: ") +
-                                 (chosen.empty() ? "none" : chosen)};
+  const auto& [landmark_joiner, chain] = std::tie(config_->joining.landmark_joiner, config_->joining.chain);
+  std::vector<std::string> names{ofLandmarks() ? "landmarks: " + landmark_joiner
+                                               : "chain: " + (chain.empty() ? "none" : chain)};
   if (ofLandmarks())
     for (const auto& joiner : joinersOfKind<LandmarkJoiner>(*config_)) names.push_back(joiner->name());
   else

@@ -73,16 +73,15 @@ void EifTree::describe(ParameterTable& table) {
   table.add("turn_tolerance", options_.gauss_newton.max_step_rad, "rad", {0, 1}, "See step_tolerance.");
   table.add("association", association_,
             "How features of different submaps are matched: by the ids that they have, or without looking at "
-            "these by "
-            "position: nearest neighbours, or joint compatibility branch and bound. Submaps without ids are "
-            "matched by "
-            "the latter.",
+            "these by position: nearest neighbours, or the set of joint compatibility branch and bound where "
+            "that is half as large again. Pairings that are less likely than a new landmark are left away. "
+            "Submaps without ids are matched by the latter.",
             {"known", "nearest_neighbour", "jcbb"});
   table.add("match_gate", association_options_.match_gate, "", {0, 1e9},
             "Largest squared Mahalanobis distance of a match by position.");
   table.add("new_gate", association_options_.new_gate, "", {0, 1e9},
-            "A feature is a new landmark beyond this squared distance from all others; between the gates it "
-            "is left out.");
+            "A feature is a new landmark beyond this squared distance from all others, and where its pairing "
+            "was left away; between the gates it is left out.");
   table.add(
       "search_margin", association_options_.search_margin_m, "m", {0, 1e6},
       "Landmarks so far from a feature are looked at, besides the uncertainty of where its submap starts.");

@@ -120,6 +120,17 @@ TEST(MapFromScans, IsNotMadeWhereASubmapKeepsNoScans) {
   EXPECT_FALSE(mapFromScans(submaps, chainSubmaps(submaps), {}, 0));
 }
 
+TEST(MapFromScans, IsNotMadeWithOtherParametersThanTheSubmaps) {
+  const JoinedMap joined = chainSubmaps(roomSubmaps());
+  GridMapperParams near;
+  near.evidence.max_range = 1.5;
+  EXPECT_FALSE(mapFromScans(roomSubmaps(), joined, near, 0));
+  GridMapperParams surer;
+  surer.evidence.occupied_log_odds *= 2;
+  EXPECT_FALSE(mapFromScans(roomSubmaps(), joined, surer, 0));
+  EXPECT_TRUE(mapFromScans(roomSubmaps(), joined, {}, 0));
+}
+
 TEST(MapFromScans, OfNothingIsEmpty) {
   EXPECT_EQ(mapFromScans({}, {}, {}, 0)->observedCells(), 0u);
   EXPECT_THROW(mapFromScans(roomSubmaps(), {}, {}, 0), std::invalid_argument);

@@ -66,15 +66,26 @@ TEST(SubmapStore, GivesTheSameWithoutAnyMemory) {
   EXPECT_FLOAT_EQ(held->cell(3, 4).first, 1.5f);
 }
 
-TEST(SubmapStore, RemovesItsFileInTheEnd) {
+TEST(SubmapStore, LeavesNoFileThatOthersCouldSee) {
   TempFolder temp;
   writeSubmaps(temp.file("s.rawlog"), 3);
-  {
-    const auto store = SubmapStore::create(0, temp.file("spill"));
-    const auto submaps = readSubmaps(temp.file("s.rawlog"), store);
-    EXPECT_TRUE(std::filesystem::exists(temp.file("spill")));
-  }
-  EXPECT_FALSE(std::filesystem::exists(temp.file("spill")));
+  const auto store = SubmapStore::create(0, temp.file("spill"));
+  const auto submaps = readSubmaps(temp.file("s.rawlog"), store);
+  for (const auto& entry : std::filesystem::directory_iterator(temp.file("")))
+    EXPECT_THAT(entry.path().filename().string(), testing::Not(testing::StartsWith("spill")));
+  expectAllThere(submaps);
+}
+
+/** As two runs that write to the same folder. */
+TEST(SubmapStore, TwoStoresOfOneNameDoNotMeet) {
+  TempFolder temp;
+  writeSubmaps(temp.file("s.rawlog"), 2);
+  const auto a = SubmapStore::create(0, temp.file("spill")), b = SubmapStore::create(0, temp.file("spill"));
+  const auto first = readSubmaps(temp.file("s.rawlog"), a);
+  GridSubmap other = *sampleSubmap(7);
+  b->takeOver(other);
+  expectAllThere(first);
+  EXPECT_EQ(gzipMember(other), gzipMember(*sampleSubmap(7)));
 }
 
 TEST(SubmapStore, DoesNotNeedTheFileThatSubmapsCameFrom) {
@@ -86,36 +97,14 @@ TEST(SubmapStore, DoesNotNeedTheFileThatSubmapsCameFrom) {
   expectAllThere(submaps);
 }
 
-TEST(SubmapStore, WritesWhatIsDroppedOnce) {
+TEST(SubmapStore, TakesNothingWhereItCannotWrite) {
   TempFolder temp;
-  writeSubmaps(temp.file("s.rawlog"), 3);
-  const auto store = SubmapStore::create(0, temp.file("spill"));
-  const auto submaps = readSubmaps(temp.file("s.rawlog"), store);
-  const auto size = std::filesystem::file_size(temp.file("spill"));
-  expectAllThere(submaps);
-  EXPECT_EQ(std::filesystem::file_size(temp.file("spill")), size);
-}
-
-TEST(SubmapStore, ReportsAFileThatWasCut) {
-  TempFolder temp;
-  writeSubmaps(temp.file("s.rawlog"), 2);
-  const auto store = SubmapStore::create(0, temp.file("spill"));
-  const auto submaps = readSubmaps(temp.file("s.rawlog"), store);
-  std::filesystem::resize_file(temp.file("spill"), 10);
-  try {
-    submaps[1]->scans();
-    FAIL() << "no error";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("spill: cannot be read again: "));
-  }
-  EXPECT_THROW(submaps[0]->packedEvidence(), InputError);
-}
-
-TEST(SubmapStore, ReportsADiskThatCannotBeWritten) {
-  TempFolder temp;
-  writeSubmaps(temp.file("s.rawlog"), 1);
   const auto store = SubmapStore::create(0, temp.file("no such folder/spill"));
-  EXPECT_THROW(readSubmaps(temp.file("s.rawlog"), store), OutputError);
+  GridSubmap submap = *sampleSubmap(0);
+  EXPECT_THROW(store->takeOver(submap), OutputError);
+  EXPECT_EQ(gzipMember(submap), gzipMember(*sampleSubmap(0)));
+  EXPECT_FALSE(submap.nodes[0].scans.empty());
+  EXPECT_EQ(store->bytesKept(), 0u);
 }
 
 TEST(SubmapStore, ServesManyThreads) {

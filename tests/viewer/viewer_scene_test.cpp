@@ -152,6 +152,7 @@ TEST(ViewerScene, LandmarksHaveEllipsesInTheirFrames) {
   const auto ellipses = std::dynamic_pointer_cast<CSetOfLines>(
       dynamic_cast<mrpt::opengl::CSetOfObjects&>(*submap).getByName("ellipses"));
   ASSERT_TRUE(ellipses);
+  ASSERT_GT(ellipses->size(), 0u);
   for (std::size_t i = 0; i < ellipses->size(); ++i) {  // 3 sigma of 0.1 m
     const auto [first, second] = endsOf(*ellipses, i);
     const bool of_first = first.x < 5;
@@ -173,8 +174,11 @@ TEST(ViewerScene, LandmarksHaveEllipsesInTheirFrames) {
   scene.update(model);
   EXPECT_DOUBLE_EQ(submap->getPoseY(), 5);
   EXPECT_FALSE(submap->isVisible());
-  ASSERT_TRUE(scene.scene()->getByName("joined landmarks"));
-  EXPECT_TRUE(scene.scene()->getByName("joined landmarks")->isVisible());
+  const auto landmarks =
+      std::dynamic_pointer_cast<mrpt::opengl::CSetOfObjects>(scene.scene()->getByName("joined landmarks"));
+  ASSERT_TRUE(landmarks);
+  EXPECT_TRUE(landmarks->isVisible());
+  EXPECT_GT(landmarks->size(), 0u);
 }
 
 TEST(ViewerScene, ViewHoldsAllSubmapsAndIsCentredOnWhatIsSeen) {

@@ -113,6 +113,7 @@ Positions positionsOf(const GridSubmaps& submaps) {
 
 std::size_t positionOf(uint32_t id, const Positions& positions, const std::string& where) {
   const auto found = positions.find(id);
+  if (positions.empty()) throw InputError(where + ": there are no grid submaps that could be edited");
   if (found == positions.end())
     throw InputError(fmt::format("{}: there is no submap {}; expected {} to {}", where, id,
                                  positions.begin()->first, positions.rbegin()->first));

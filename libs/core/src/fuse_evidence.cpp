@@ -270,7 +270,8 @@ double resolutionOf(const std::vector<PlacedSubmap>& placed, double wanted) {
 }  // namespace
 
 double mapResolution(const GridSubmaps& submaps, const std::vector<CPosePDFGaussian>& frames, double wanted) {
-  return resolutionOf(placedSubmaps(submaps, frames), wanted);
+  const auto placed = placedSubmaps(submaps, frames);
+  return placed.empty() ? 0 : resolutionOf(placed, wanted);
 }
 
 EvidenceGrid fuseEvidence(const GridSubmaps& submaps, const std::vector<CPosePDFGaussian>& frames,

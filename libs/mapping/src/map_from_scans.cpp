@@ -1,4 +1,5 @@
 #include <submap_slam/core/map_resolution.h>
+#include <submap_slam/mapping/evidence_renderer.h>
 #include <submap_slam/mapping/map_from_scans.h>
 #include <tbb/parallel_for.h>
 
@@ -33,6 +34,26 @@ std::vector<KeptScan> keptScans(const GridSubmaps& submaps, const JoinedMap& joi
   return kept;
 }
 
+bool haveEqualCells(const EvidenceLayer& a, const EvidenceLayer& b) {
+  return a.getXMin() == b.getXMin() && a.getYMin() == b.getYMin() && a.getSizeX() == b.getSizeX() &&
+         std::equal(a.begin(), a.end(), b.begin(), b.end());
+}
+
+/** Whether the parameters draw the scans of a submap as they were drawn into its evidence. */
+bool drawsItsEvidence(const GridSubmap& submap, const GridMapperParams& mapper) {
+  const auto scans = submap.scans();
+  std::vector<LaserPoints> points;
+  points.reserve(scans.size());
+  std::vector<PlacedScan> placed;
+  for (std::size_t i = 0; i < scans.size(); ++i)
+    if (!scans[i].empty())
+      placed.push_back({&points.emplace_back(pointsOf(scans[i], mapper)), submap.nodes[i].pose});
+  EvidenceParams params = mapper.evidence;
+  params.resolution = submap.resolution();
+  const EvidenceGrid drawn = renderEvidence(placed, params), kept = submap.packedEvidence()->unpacked();
+  return haveEqualCells(drawn.hits, kept.hits) && haveEqualCells(drawn.log_odds, kept.log_odds);
+}
+
 /** Calls f(k, scans) for each submap k, in order, until it returns false; all threads read submaps. */
 template <class F>
 void forEachSubmap(const GridSubmaps& submaps, const JoinedMap& joined, const GridMapperParams& mapper, F f) {
@@ -53,6 +74,10 @@ std::optional<EvidenceGrid> mapFromScans(const GridSubmaps& submaps, const Joine
   EvidenceParams params = mapper.evidence;
   params.resolution = mapResolution(submaps, joined.frames, resolution);
   if (params.resolution <= 0) return EvidenceGrid();
+  const auto first = std::find_if(submaps.begin(), submaps.end(), [](const auto& submap) {
+    return submap->evidenceSummary().stored_cells > 0;
+  });
+  if (!drawsItsEvidence(**first, mapper)) return std::nullopt;
   TiledEvidence cells;
   bool complete = true;
   forEachSubmap(submaps, joined, mapper, [&](std::size_t k, const std::vector<KeptScan>& scans) {

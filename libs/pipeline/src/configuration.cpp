@@ -62,11 +62,10 @@ void describeJoiningParameters(ParameterTable& table, Configuration& config) {
       "Cell size of the global map where a joiner leaves its making to the program; 0: that of the submaps, "
       "doubled until the map has at most 20 million cells");
   table.add("landmark_joiner", config.joining.landmark_joiner, "Name of the joiner of landmark submaps");
-  table.add(
-      "memory", config.joining.memory, "MB", {kLeastMemory_MB, 1e9},
-      "About how much memory the program may take while it joins. What is left beside the map and the "
-      "joiners' own data keeps submaps; those that do not fit are read again when they are needed, with "
-      "the same result");
+  table.add("memory", config.joining.memory, "MB", {kLeastMemory_MB, 1e9},
+            "About how much memory the program may take while it joins. What is left beside the map and the "
+            "joiners' own data keeps submaps; those that do not fit wait in a temporary file in OUT, "
+            "uncompressed, until they are needed; the result is the same");
   describe(table, config.node_refinement);
   table.section("output", "What a run writes beside its map");
   table.add("report", config.output.report,

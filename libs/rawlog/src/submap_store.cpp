@@ -1,14 +1,14 @@
 #include <submap_slam/rawlog/submap_store.h>
 
 #include <fmt/format.h>
-#include <mrpt/io/CFileInputStream.h>
 #include <mrpt/io/CMemoryStream.h>
 #include <mrpt/serialization/CArchive.h>
 #include <submap_slam/core/errors.h>
 
-#include <filesystem>
-#include <optional>
 #include <utility>
+#include <vector>
+
+#include "spill_file.h"
 
 namespace submap_slam {
 namespace {
@@ -54,7 +54,8 @@ class SubmapStore::Entry : public SubmapBulkSource {
   // guarded by the store
   mutable BulkPtr kept;
   mutable std::size_t kept_bytes = 0;
-  mutable std::optional<uint64_t> spilled_at;          // byte of the spill file
+  mutable uint64_t spilled_at = 0;                     // byte of the spill file
+  mutable std::size_t spilled_bytes = 0;               // 0: it is not there
   mutable std::weak_ptr<const SubmapBulk> in_use;      // what was dropped may still be in somebody's hands
   mutable std::list<const Entry*>::iterator position;  // in the list of the store, if kept
 };
@@ -70,40 +71,33 @@ std::shared_ptr<SubmapStore> SubmapStore::create(std::size_t memory_bytes, std::
   return create([memory_bytes](std::size_t) { return memory_bytes; }, std::move(spill_file));
 }
 
-SubmapStore::~SubmapStore() {
-  std::error_code ignored;
-  if (spill_.is_open()) std::filesystem::remove(spill_file_, ignored);
-}
+SubmapStore::~SubmapStore() = default;
 
 void SubmapStore::takeOver(GridSubmap& submap) {
   const auto entry = std::make_shared<Entry>(shared_from_this());
   keep(*entry, std::make_shared<const SubmapBulk>(submap.bulk()));
+  dropWhatIsTooMuch();
   submap.storeAway(entry);
 }
 
-/** Writes what is kept of a submap to the end of the spill file, unless it is there already. */
+/** Writes what is kept of a submap to the spill file, unless it is there already. */
 void SubmapStore::spill(const Entry& entry) {
-  if (entry.spilled_at) return;
+  if (entry.spilled_bytes > 0) return;
   mrpt::io::CMemoryStream bytes;
   constexpr uint64_t kGrowth = 1 << 22;
   bytes.setAllocBlockSize(kGrowth);
   writeBulk(mrpt::serialization::archiveFrom(bytes), *entry.kept);
-  if (!spill_.is_open()) spill_.open(spill_file_, std::ios::binary | std::ios::trunc);
-  spill_.write(static_cast<const char*>(bytes.getRawBufferData()),
-               static_cast<std::streamsize>(bytes.getTotalBytesCount()));
-  if (!spill_.flush()) throw OutputError(fmt::format("{}: cannot be written", spill_file_));
-  entry.spilled_at = spilled_bytes_;
-  spilled_bytes_ += bytes.getTotalBytesCount();
+  if (!spill_) spill_ = std::make_unique<SpillFile>(spill_file_);
+  entry.spilled_at = spill_->append(bytes.getRawBufferData(), bytes.getTotalBytesCount());
+  entry.spilled_bytes = bytes.getTotalBytesCount();
 }
 
 SubmapStore::BulkPtr SubmapStore::readAgain(const Entry& entry) const {
-  try {
-    mrpt::io::CFileInputStream in(spill_file_);
-    in.Seek(static_cast<int64_t>(*entry.spilled_at));
-    return std::make_shared<const SubmapBulk>(readBulk(mrpt::serialization::archiveFrom(in)));
-  } catch (const std::exception& error) {
-    throw InputError(fmt::format("{}: cannot be read again: {}", spill_file_, error.what()));
-  }
+  std::vector<char> bytes(entry.spilled_bytes);
+  spill_->read(entry.spilled_at, bytes.data(), bytes.size());
+  mrpt::io::CMemoryStream stream;
+  stream.assignMemoryNotOwn(bytes.data(), bytes.size());
+  return std::make_shared<const SubmapBulk>(readBulk(mrpt::serialization::archiveFrom(stream)));
 }
 
 std::size_t SubmapStore::bytesKept() const {
@@ -117,6 +111,16 @@ std::size_t SubmapStore::timesRead() const {
 }
 
 SubmapStore::BulkPtr SubmapStore::get(const Entry& entry) {
+  const BulkPtr bulk = findOrRead(entry);
+  try {
+    dropWhatIsTooMuch();
+  } catch (const OutputError&) {
+    // what is asked for is here: better too much memory than no result
+  }
+  return bulk;
+}
+
+SubmapStore::BulkPtr SubmapStore::findOrRead(const Entry& entry) {
   if (auto bulk = find(entry)) return bulk;
   const std::lock_guard<std::mutex> reading(entry.reading);
   if (auto bulk = find(entry)) return bulk;
@@ -137,7 +141,7 @@ SubmapStore::BulkPtr SubmapStore::find(const Entry& entry) {
   return bulk;
 }
 
-/** Makes the bulk the most recently used and drops what is too much. */
+/** Makes the bulk the most recently used. */
 void SubmapStore::keep(const Entry& entry, const BulkPtr& bulk) {
   const std::size_t bytes = bulk->bytes();
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -151,6 +155,12 @@ void SubmapStore::keep(const Entry& entry, const BulkPtr& bulk) {
   entry.in_use = bulk;
   entry.kept_bytes = bytes;
   bytes_kept_ += bytes;
+  has_grown_ = true;
+}
+
+void SubmapStore::dropWhatIsTooMuch() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!std::exchange(has_grown_, false)) return;
   const std::size_t budget = budget_(bytes_kept_);
   while (bytes_kept_ > budget) {
     const Entry& oldest = *recent_.back();

@@ -12,7 +12,7 @@ function placesAxis(places) {
   const longest = Math.max(...places.map((name) => name.length)), kCharacter = 7, kMostTilted = 130;
   const tilted = (plot) => places.length * (longest + 2) * kCharacter > plot.width - 70;
   return {
-    splits: () => places.map((_, i) => i), values: (_, ticks) => ticks.map((i) => places[i]),
+    splits: (_, axis, low, high) => places.map((_, i) => i).filter((i) => i >= low && i <= high), values: (_, ticks) => ticks.map((i) => places[i]),
     rotate: (plot) => (tilted(plot) ? 40 : 0),
     size: (plot) => (tilted(plot) ? Math.min(kMostTilted, 24 + 0.65 * kCharacter * longest) : 36),
   };

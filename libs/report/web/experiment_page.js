@@ -74,7 +74,7 @@ function addCells(data) {
 }
 
 function addRecordOf(data) {
-  const panel = addPanel('made', 'How it was made', 'With this description, saved as a file, the program of this version makes the same tables and plots again, times apart.', true);
+  const panel = addPanel('made', 'How it was made', 'With this description, saved as a file, the program of this version makes the same tables and plots again, times apart. If it names recordings, --data says where they are.', true);
   const all = (key) => [...new Set(data.cells.map((cell) => cell[key]).filter((text) => text))].join(', ');
   const facts = [['submap-slam', data.version], ['build', all('build')], ['MRPT', all('mrpt')], ['seeds', data.seeds.join(', ')]];
   panel.append(new DataTable([{ title: 'what', key: 'what', kind: 'text' }, { title: 'value', key: 'value', kind: 'text', show: (fact) => anyValue(fact.value) }],

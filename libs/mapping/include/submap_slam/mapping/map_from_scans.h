@@ -15,8 +15,9 @@ namespace submap_slam {
  * The beams are drawn with the parameters of `mapper`, and the scans of few submaps are in memory at a time.
  * The same for any number of threads.
  * @param resolution m per cell; 0: as mapResolution() says
- * @return nothing if a submap with evidence keeps no scan
- * Throws std::invalid_argument if frames or nodes are not as many as those of the submaps. */
+ * @return nothing if a submap with evidence keeps no scan, or if `mapper` does not draw the scans of the
+ * first one as its evidence was drawn: whoever made the submaps had other parameters, in a file that keeps
+ * evidence alone Throws std::invalid_argument if frames or nodes are not as many as those of the submaps. */
 std::optional<EvidenceGrid> mapFromScans(const GridSubmaps& submaps, const JoinedMap& joined,
                                          const GridMapperParams& mapper, double resolution);
 

@@ -25,7 +25,8 @@ struct RunSummary {
   std::size_t submaps_in_map = 0;  ///< of the latest map that an incremental run wrote while it built submaps
   bool failed = false;             ///< landmark submaps could not be joined; what is written is not joined
 
-  /** The grid submaps as they were joined, with their map; null if there are none or the run was stopped. */
+  /** The grid submaps as they were joined, with their map, as far as joining came if it was stopped;
+   * null if there are none or the run was stopped before. */
   std::shared_ptr<const JoinedMap> joined;
 };
 

@@ -16,7 +16,7 @@ namespace submap_slam {
 
 constexpr const char* kSubmapFile = "submaps.rawlog";
 constexpr const char* kLandmarkFile = "landmark_submaps.rawlog";
-constexpr const char* kSpillFile = "submaps.spill";  ///< of the SubmapStore; gone when the run ends
+constexpr const char* kSpillFile = "submaps.spill";  ///< see SubmapStore: never seen in the folder
 constexpr const char* kReportFile = "report.html";
 constexpr const char* kMetricsFile =
     "metrics.json";  ///< written last: a folder that has it holds a finished run

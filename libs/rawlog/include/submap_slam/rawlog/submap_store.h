@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <fstream>
 #include <functional>
 #include <list>
 #include <memory>
@@ -13,10 +12,12 @@
 
 namespace submap_slam {
 
+class SpillFile;
+
 /** Keeps evidence and scans of submaps within a budget of memory.
  *
- * What was used least recently is written to a spill file and read again when asked for. Whatever the budget,
- * readers see the same values. Any number of threads may use submaps whose bulk is here.
+ * What was used least recently is written to a temporary file and read again when asked for. Whatever the
+ * budget, readers see the same values. Any number of threads may use submaps whose bulk is here.
  */
 class SubmapStore : public std::enable_shared_from_this<SubmapStore> {
  public:
@@ -24,15 +25,15 @@ class SubmapStore : public std::enable_shared_from_this<SubmapStore> {
   using Budget = std::function<std::size_t(std::size_t kept_bytes)>;
 
   /** @param budget     what readers still hold comes on top
-   * @param spill_file written when it is first needed, removed with the store; as large as what was dropped
-   */
+   * @param spill_file a temporary file beside this name takes what is dropped, uncompressed; it has no name
+   * itself */
   static std::shared_ptr<SubmapStore> create(Budget budget, std::string spill_file);
   static std::shared_ptr<SubmapStore> create(std::size_t memory_bytes, std::string spill_file);
   ~SubmapStore();
   SubmapStore(const SubmapStore&) = delete;
   SubmapStore& operator=(const SubmapStore&) = delete;
 
-  /** Takes the bulk of a submap. Not while another thread uses it. Throws OutputError if the spill file
+  /** Takes the bulk of a submap. Not while another thread uses it. Throws OutputError if the temporary file
    * cannot be written; the submap then is as it was. */
   void takeOver(GridSubmap& submap);
 
@@ -48,8 +49,10 @@ class SubmapStore : public std::enable_shared_from_this<SubmapStore> {
 
   SubmapStore(Budget budget, std::string spill_file);
   BulkPtr get(const Entry& entry);
+  BulkPtr findOrRead(const Entry& entry);
   BulkPtr find(const Entry& entry);
   void keep(const Entry& entry, const BulkPtr& bulk);
+  void dropWhatIsTooMuch();
   void forget(const Entry& entry);
   void spill(const Entry& entry);
   BulkPtr readAgain(const Entry& entry) const;
@@ -57,10 +60,10 @@ class SubmapStore : public std::enable_shared_from_this<SubmapStore> {
   const Budget budget_;
   const std::string spill_file_;
 
-  mutable std::mutex mutex_;  // guards what follows, and what the entries keep
-  std::ofstream spill_;       // open once it was needed
-  uint64_t spilled_bytes_ = 0;
-  std::list<const Entry*> recent_;  // those that keep something, the most recently used first
+  mutable std::mutex mutex_;          // guards what follows, and what the entries keep
+  std::unique_ptr<SpillFile> spill_;  // once it was needed
+  bool has_grown_ = false;            // since the budget was asked
+  std::list<const Entry*> recent_;    // those that keep something, the most recently used first
   std::size_t bytes_kept_ = 0, times_read_ = 0;
 };
 
