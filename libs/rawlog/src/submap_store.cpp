@@ -111,7 +111,7 @@ std::size_t SubmapStore::timesRead() const {
 }
 
 SubmapStore::BulkPtr SubmapStore::get(const Entry& entry) {
-  const BulkPtr bulk = findOrRead(entry);
+  BulkPtr bulk = findOrRead(entry);
   try {
     dropWhatIsTooMuch();
   } catch (const OutputError&) {
