@@ -128,14 +128,16 @@ class LoopSearch::State {
     PoseWindow window;  ///< of T_k_older
     Matrix3d covariance;
     std::optional<SubmapMatch> match;
+    Matrix3d match_covariance = Matrix3d::Zero();
+    std::string refused;  ///< why, or empty
   };
 
   void appendFrame(FrameGraph& graph) const;
   void closeLoops(std::size_t k);
   std::vector<Task> tasksOf(std::size_t k, const FrameCovariances& covariances) const;
-  std::string refusal(std::size_t k, const Task& task, const SubmapMatch& match,
-                      const Matrix3d& match_covariance) const;
-  std::size_t list(std::size_t k, const Task& task, const Matrix3d& covariance, const std::string& refused);
+  void attempt(std::size_t k, const SubmapMatcher& matcher, Task& task) const;
+  std::string refusal(std::size_t k, const SubmapMatcher& matcher, const Task& task) const;
+  std::size_t list(std::size_t k, const Task& task, const Matrix3d& covariance);
   bool acceptVerified(std::size_t k, const FrameCovariances& covariances);
   enum class Agreement { kAgree, kContradict, kTellNothing };
   Agreement compare(const Link& a, const Link& b, const FrameCovariances& covariances) const;
@@ -188,19 +190,16 @@ void LoopSearch::State::closeLoops(std::size_t k) {
   if (k == 0) return;
   const FrameCovariances covariances(result_.graph);
   std::vector<Task> tasks = tasksOf(k, covariances);
-  tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t t) {
-    tasks[t].match = matcher.match(known_[tasks[t].older].submap, tasks[t].window);
-  });
+  tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t t) { attempt(k, matcher, tasks[t]); });
   for (const Task& task : tasks) {
     if (!task.match) continue;
-    const Matrix3d by_match = covarianceOf(*task.match);
-    const Matrix3d covariance = by_match + variances(params_.match_sigma_xy, params_.match_sigma_phi);
-    const Matrix3d usual = by_match + variances(params_.usual_match_xy, params_.usual_match_phi);
-    const std::string refused = refusal(k, task, *task.match, covariance);
-    const std::size_t entry = list(k, task, usual, refused);
-    if (!refused.empty()) continue;
-    pending_.push_back(
-        {{k, task.older, task.match->T_ref_other, covariance, usual, true}, task.window.half_xy, entry});
+    const Matrix3d usual =
+        covarianceOf(*task.match) + variances(params_.usual_match_xy, params_.usual_match_phi);
+    const std::size_t entry = list(k, task, usual);
+    if (!task.refused.empty()) continue;
+    pending_.push_back({{k, task.older, task.match->T_ref_other, task.match_covariance, usual, true},
+                        task.window.half_xy,
+                        entry});
   }
   if (acceptVerified(k, covariances)) result_.graph.optimise();
 }
@@ -225,30 +224,40 @@ std::vector<LoopSearch::State::Task> LoopSearch::State::tasksOf(std::size_t k,
                       std::min(params_.max_window_phi, params_.margin_phi + 3 * sigma_phi)};
     if (sigma_phi > kHeadingUnknown_rad) window.half_phi = M_PI;
     if (sigma_xy < params_.known || apart > window.half_xy) continue;
-    tasks.push_back({i, window, covariance, std::nullopt});
+    tasks.push_back({i, window, covariance, std::nullopt, Matrix3d::Zero(), {}});
   }
   return tasks;
 }
 
-std::string LoopSearch::State::refusal(std::size_t k, const Task& task, const SubmapMatch& match,
-                                       const Matrix3d& match_covariance) const {
+void LoopSearch::State::attempt(std::size_t k, const SubmapMatcher& matcher, Task& task) const {
+  task.match = matcher.match(known_[task.older].submap, task.window);
+  if (!task.match) return;
+  task.match_covariance =
+      covarianceOf(*task.match) + variances(params_.match_sigma_xy, params_.match_sigma_phi);
+  task.refused = refusal(k, matcher, task);
+}
+
+std::string LoopSearch::State::refusal(std::size_t k, const SubmapMatcher& matcher, const Task& task) const {
+  const SubmapMatch& match = *task.match;
   if (by_hand_.refuses(k, task.older)) return "rejected by hand";
   if (match.hit_share < params_.min_hit_share)
     return fmt::format("overlap too small: {:.2f} of the surfaces", match.hit_share);
   if (match.agreement < params_.min_agreement)
     return fmt::format("contradicts free space: agreement {:.2f}", match.agreement);
-  if (task.window.half_xy > params_.rival_window && match.rival_score > 0)
-    return fmt::format("ambiguous: scores {:.2f} here, {:.2f} elsewhere", match.score, match.rival_score);
   // Linearised, a covariance says nothing of where the older frame is if the heading may be any.
-  if (task.covariance(2, 2) > kHeadingUnknown_rad * kHeadingUnknown_rad) return {};
-  const Vector3d e = relationError({}, match.T_ref_other, task.window.centre).e;
-  const double chi2 = e.dot((task.covariance + match_covariance).inverse() * e);
-  if (chi2 > kChi2Alone) return fmt::format("too far from where the chain leads: chi2 {:.0f}", chi2);
+  if (task.covariance(2, 2) <= kHeadingUnknown_rad * kHeadingUnknown_rad) {
+    const Vector3d e = relationError({}, match.T_ref_other, task.window.centre).e;
+    const double chi2 = e.dot((task.covariance + task.match_covariance).inverse() * e);
+    if (chi2 > kChi2Alone) return fmt::format("too far from where the chain leads: chi2 {:.0f}", chi2);
+  }
+  if (task.window.half_xy <= params_.rival_window) return {};
+  const double rival = matcher.rivalScore(known_[task.older].submap, task.window, match);
+  if (rival > 0)
+    return fmt::format("ambiguous: scores {:.2f} here, {:.2f} elsewhere", match.searched.score, rival);
   return {};
 }
 
-std::size_t LoopSearch::State::list(std::size_t k, const Task& task, const Matrix3d& covariance,
-                                    const std::string& refused) {
+std::size_t LoopSearch::State::list(std::size_t k, const Task& task, const Matrix3d& covariance) {
   Constraint candidate;
   candidate.from = submaps_[k]->id;
   candidate.to = submaps_[task.older]->id;
@@ -257,7 +266,7 @@ std::size_t LoopSearch::State::list(std::size_t k, const Task& task, const Matri
   candidate.inter = true;
   candidate.accepted = false;
   candidate.by_hand = by_hand_.refuses(k, task.older);
-  candidate.reason = refused.empty() ? "no other match bears it out" : refused;
+  candidate.reason = task.refused.empty() ? "no other match bears it out" : task.refused;
   result_.candidates.push_back(candidate);
   return result_.candidates.size() - 1;
 }

@@ -66,6 +66,20 @@ TEST(ScorePyramid, UnknownFreeAndOccupied) {
   EXPECT_EQ(map.score(0, -100, 1 << 20), 64);
 }
 
+/** What a search of cells of 0.2 m tries in a window of less than 7 cells. */
+std::vector<TPose2D> allPoses(const PoseWindow& window, const std::vector<TPoint2D>& points) {
+  double farthest = 0;
+  for (const auto& p : points) farthest = std::max(farthest, p.norm());
+  const int turns = static_cast<int>(std::ceil(window.half_phi * farthest / 0.2));
+  std::vector<TPose2D> poses;
+  for (int turn = -turns; turn <= turns; ++turn)
+    for (int dy = -7; dy <= 7; ++dy)
+      for (int dx = -7; dx <= 7; ++dx)
+        poses.emplace_back(window.centre.x + 0.2 * dx, window.centre.y + 0.2 * dy,
+                           window.centre.phi + turn * window.half_phi / turns);
+  return poses;
+}
+
 /** Branch and bound must find what looking everywhere finds. */
 class SearchWindow : public ::testing::TestWithParam<uint32_t> {};
 
@@ -78,18 +92,18 @@ TEST_P(SearchWindow, FindsTheBestOfAllPoses) {
   ASSERT_TRUE(found);
   EXPECT_NEAR(scoreAt(map, points, found->pose), found->score, 1e-12);
 
-  double farthest = 0, best = 0;
-  for (const auto& p : points) farthest = std::max(farthest, p.norm());
-  const int turns = static_cast<int>(std::ceil(window.half_phi * farthest / 0.2));
-  for (int turn = -turns; turn <= turns; ++turn)
-    for (int dy = -7; dy <= 7; ++dy)
-      for (int dx = -7; dx <= 7; ++dx)
-        best = std::max(best, scoreAt(map, points,
-                                      {window.centre.x + 0.2 * dx, window.centre.y + 0.2 * dy,
-                                       window.centre.phi + turn * window.half_phi / turns}));
+  double best = 0, best_elsewhere = 0;
+  for (const TPose2D& pose : allPoses(window, points)) {
+    const double score = scoreAt(map, points, pose);
+    best = std::max(best, score);
+    const bool elsewhere = std::hypot(pose.x - found->pose.x, pose.y - found->pose.y) > 0.7 ||
+                           std::abs(mrpt::math::wrapToPi(pose.phi - found->pose.phi)) > 0.2;
+    if (elsewhere) best_elsewhere = std::max(best_elsewhere, score);
+  }
   EXPECT_NEAR(found->score, best, 1e-12);
   EXPECT_LE(std::abs(found->pose.x - window.centre.x), 1.4 + 1e-9);
   EXPECT_LE(std::abs(found->pose.y - window.centre.y), 1.4 + 1e-9);
+  EXPECT_NEAR(searchRival(map, points, window, *found, {0.7, 0.2, 0.1}), best_elsewhere, 1e-12);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, SearchWindow, ::testing::Range(0u, 12u));
@@ -117,11 +131,12 @@ TEST(SearchWindow, TheSamePlaceTwiceIsARival) {
   const auto wide = searchWindow(map, points, {{0, 0, 0}, 4, 0.1}, 0.5);
   ASSERT_TRUE(wide);
   EXPECT_NEAR(wide->score, 1, 1e-12);
-  EXPECT_NEAR(wide->rival_score, 1, 1e-12);
-  const auto narrow = searchWindow(map, points, {{1.5, 0, 0}, 0.8, 0.1}, 0.5);
-  ASSERT_TRUE(narrow);
-  EXPECT_NEAR(narrow->pose.x, 1.5, 0.1 + 1e-9);
-  EXPECT_EQ(narrow->rival_score, 0);
+  EXPECT_NEAR(searchRival(map, points, {{0, 0, 0}, 4, 0.1}, *wide), 1, 1e-12);
+  const PoseWindow narrow{{1.5, 0, 0}, 0.8, 0.1};
+  const auto alone = searchWindow(map, points, narrow, 0.5);
+  ASSERT_TRUE(alone);
+  EXPECT_NEAR(alone->pose.x, 1.5, 0.1 + 1e-9);
+  EXPECT_EQ(searchRival(map, points, narrow, *alone), 0);
 }
 
 }  // namespace

@@ -39,14 +39,15 @@ TEST(SubmapMatcher, FindsWhereSubmapsBelongFromFarOff) {
     const TPose2D truth = room().trueRelation(0, k);
     if (std::hypot(truth.x, truth.y) > 5) continue;  // they share too little
     const PoseWindow window{{truth.x + 1.7, truth.y - 2.1, truth.phi + 0.3}, 3, 0.5};
-    const auto match = matcher.match(matchable(*submaps[k]), window);
+    const MatchableSubmap other = matchable(*submaps[k]);
+    const auto match = matcher.match(other, window);
     ASSERT_TRUE(match) << k;
     EXPECT_NEAR(match->T_ref_other.x, truth.x, 0.03) << k;
     EXPECT_NEAR(match->T_ref_other.y, truth.y, 0.03) << k;
     EXPECT_NEAR(mrpt::math::wrapToPi(match->T_ref_other.phi - truth.phi), 0, 0.01) << k;
     EXPECT_GT(match->agreement, 0.85) << k;
     EXPECT_GT(match->hit_share, 0.5) << k;
-    EXPECT_EQ(match->rival_score, 0) << k;
+    EXPECT_EQ(matcher.rivalScore(other, window, *match), 0) << k;
   }
 }
 

@@ -52,20 +52,24 @@ const MatchResult& SubmapMatcher::better(const MatchResult& from_search,
 std::optional<SubmapMatch> SubmapMatcher::match(const MatchableSubmap& other,
                                                 const PoseWindow& window) const {
   const SubmapSurface& surface = other.surface;
-  const auto found = searchWindow(pyramid_, surface.sparse, window, params_.min_score, params_.rivals);
+  const auto found = searchWindow(pyramid_, surface.sparse, window, params_.min_score);
   if (!found) return std::nullopt;
   const MatchResult refined = better(refine(surface, found->pose), refine(surface, window.centre));
 
   SubmapMatch match;
   match.T_ref_other = refined.pose;
   match.information = refined.information;
-  match.score = found->score;
-  match.rival_score = found->rival_score;
+  match.searched = *found;
   const MapAgreement there = agreementOf(surface.dense, reference_.map, match.T_ref_other);
   const MapAgreement back = agreementOf(reference_.surface.dense, other.map, TPose2D() - match.T_ref_other);
   match.hit_share = std::max(there.hit_share, back.hit_share);
   match.agreement = std::min(there.agreement, back.agreement);
   return match;
+}
+
+double SubmapMatcher::rivalScore(const MatchableSubmap& other, const PoseWindow& window,
+                                 const SubmapMatch& match) const {
+  return searchRival(pyramid_, other.surface.sparse, window, match.searched, params_.rivals);
 }
 
 }  // namespace submap_slam

@@ -26,10 +26,6 @@ struct RivalParams {
 struct WindowMatch {
   mrpt::math::TPose2D pose;  ///< T_map_points: where the points fit best, to a cell of the pyramid
   double score = 0;          ///< mean over the points of what they score there, in [0, 1]
-
-  /** Best score that is farther than `distance` or turned by more than `turn` from the best pose, if it is a
-   * rival; else 0. Not looked for in a window that is smaller than that. */
-  double rival_score = 0;
 };
 
 /** The pose in the window where the points score best, found exactly (on the grid of translations of one cell
@@ -38,7 +34,11 @@ struct WindowMatch {
  * @param points in their own frame (m) */
 std::optional<WindowMatch> searchWindow(const ScorePyramid& map,
                                         const std::vector<mrpt::math::TPoint2D>& points,
-                                        const PoseWindow& window, double min_score,
-                                        const RivalParams& rivals = {});
+                                        const PoseWindow& window, double min_score);
+
+/** Best score in the window that is farther than `distance` or turned by more than `turn` from what was found
+ * in it, if it is a rival; else 0. */
+double searchRival(const ScorePyramid& map, const std::vector<mrpt::math::TPoint2D>& points,
+                   const PoseWindow& window, const WindowMatch& found, const RivalParams& rivals = {});
 
 }  // namespace submap_slam

@@ -41,12 +41,11 @@ class ScorePyramid {
     unsigned columns = 0, rows = 0;
     std::vector<uint32_t> fours;  ///< row by row; with one more column and one more row, which are unknown
 
-    /** Cells have integer coordinates of any size; 255 · the best score of the cells from (column, row) up.
-     */
-    uint32_t fourScores(int column, int row) const {
-      return fours[indexOf(row, rows) * (std::size_t{columns} + 1) + indexOf(column, columns)];
+    /** 255 · the best score of the cells from (column, row) up, of any size. */
+    uint8_t score(int column, int row) const {
+      return static_cast<uint8_t>(
+          fours[indexOf(row, rows) * (std::size_t{columns} + 1) + indexOf(column, columns)]);
     }
-    uint8_t score(int column, int row) const { return static_cast<uint8_t>(fourScores(column, row)); }
 
    private:
     std::size_t indexOf(int place, unsigned count) const {  // what lies before the first wraps around

@@ -31,8 +31,7 @@ MatchableSubmap matchable(const GridSubmap& submap, const SubmapMatcherParams& p
 struct SubmapMatch {
   mrpt::math::TPose2D T_ref_other;
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< Hessian of the point-to-line match at that pose
-  double score = 0;                                       ///< of the search of the window
-  double rival_score = 0;                                 ///< see WindowMatch
+  WindowMatch searched;                                   ///< what the search of the window found
   double hit_share = 0;  ///< of the better direction: other's surfaces in the reference or the reverse
   double agreement = 0;  ///< with free space, of the worse direction
 };
@@ -51,6 +50,9 @@ class SubmapMatcher {
 
   /** Best match in the window of T_ref_other; empty if none reaches min_score. */
   std::optional<SubmapMatch> match(const MatchableSubmap& other, const PoseWindow& window) const;
+
+  /** See searchRival. */
+  double rivalScore(const MatchableSubmap& other, const PoseWindow& window, const SubmapMatch& match) const;
 
  private:
   MatchResult refine(const SubmapSurface& surface, const mrpt::math::TPose2D& start) const;
