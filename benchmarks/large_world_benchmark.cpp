@@ -132,7 +132,7 @@ void joinAndReport(const GridSubmaps& submaps, const std::vector<TPose2D>& truth
   const double begin = seconds(), cpu_begin = cpuSeconds();
   const JoinedMap joined = joiner.join(submaps, start, {});
   const double after_join = seconds(), cpu_after_join = cpuSeconds();
-  const EvidenceGrid map = fuseEvidence(submaps, joined.frames, 0);
+  const PackedEvidence map = fuseEvidence(submaps, joined.frames, 0);
   const double end = seconds(), cpu_end = cpuSeconds();
   fmt::print("{} ({}), {} iterations\n", toString(joined.status), joined.reason, joined.iterations.size());
   fmt::print(

@@ -125,7 +125,7 @@ Estimate runPipeline(const Cell& cell, const Configuration& config, Metrics& fig
   if (iterations > 0) figures["iteration_s"] = figures["join_wall_s"].get<double>() / iterations;
   const OutputDirectory out(cell.folder, true);
   Estimate estimate{readTum(out.file("trajectory.tum")), {}};
-  if (summary.joined) estimate.map = summary.joined->map;
+  if (summary.joined) estimate.map = summary.joined->map.unpacked();
   return estimate;
 }
 

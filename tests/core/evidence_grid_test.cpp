@@ -50,7 +50,6 @@ TEST(EvidenceGrid, StartsUnknown) {
   EXPECT_EQ(grid.sizeY(), 10u);
   EXPECT_EQ(grid.cells(), 200u);
   EXPECT_EQ(grid.observedCells(), 0u);
-  EXPECT_DOUBLE_EQ(grid.occupancy(3, 3), 0.5);
 }
 
 TEST(EvidenceGrid, LimitsAreRoundedOutwards) {
@@ -81,20 +80,8 @@ TEST(EvidenceGrid, CroppingIsIdempotentAndNothingIsLeftOfNothing) {
 }
 
 TEST(EvidenceGrid, OccupancyIsTheLogisticOfTheEvidence) {
-  EvidenceGrid grid(0, 1, 0, 1, 1);
-  observe(grid, 0.5, 0.5, static_cast<float>(std::log(3.0)), 1);
-  EXPECT_NEAR(grid.occupancy(0, 0), 0.75, 1e-6);
-}
-
-TEST(EvidenceGrid, MrptsGridHoldsTheProbabilityOfFreeSpace) {
-  EvidenceGrid grid(0, 0.3, 0, 0.1, 0.1);
-  observe(grid, 0.05, 0.05, static_cast<float>(std::log(3.0)), 1);
-  observe(grid, 0.15, 0.05, -300, 100);
-  const auto map = grid.toOccupancyGrid();
-  EXPECT_EQ(map.getSizeX(), 3u);
-  EXPECT_NEAR(map.getPos(0.05f, 0.05f), 0.25, 0.02);
-  EXPECT_GT(map.getPos(0.15f, 0.05f), 0.99f);
-  EXPECT_NEAR(map.getPos(0.25f, 0.05f), 0.5, 0.01);
+  EXPECT_NEAR(occupancyOf(static_cast<float>(std::log(3.0))), 0.75, 1e-6);
+  EXPECT_DOUBLE_EQ(occupancyOf(0), 0.5);
 }
 
 TEST(EvidenceGrid, ReadsBackTheSameBits) {
@@ -127,15 +114,6 @@ TEST(EvidenceGrid, RefusesImplausibleSizes) {
   EXPECT_THROW(readHeader(0, 0, 0.1, 0, 2), std::runtime_error);
   EXPECT_THROW(readHeader(0, 0, 0.1, 2, 0xffffffffu), std::runtime_error);
   EXPECT_ANY_THROW(readHeader(0, 0, 0.1, 2, 2)) << "cells are missing";
-}
-
-TEST(EvidenceGrid, KnowsWhetherItIsCropped) {
-  EvidenceGrid grid(0, 1, 0, 1, 0.1);
-  EXPECT_FALSE(grid.isCropped());
-  *grid.hits.cellByIndex(2, 3) = 1;
-  *grid.hits.cellByIndex(7, 4) = 1;
-  EXPECT_FALSE(grid.isCropped());
-  EXPECT_TRUE(grid.cropped().isCropped());
 }
 
 TEST(EvidenceGrid, IsMovedWithoutACopy) {

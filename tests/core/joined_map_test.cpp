@@ -179,7 +179,7 @@ TEST(FuseEvidence, OneSubmapIsItsOwnMap) {
   auto submap = emptySubmap();
   set(*submap, 0.25, 0.35, 3.5f, 4);
   set(*submap, -0.45, 0.05, -2, 7);
-  const EvidenceGrid map = fuseEvidence({submap}, {gaussian({0, 0, 0})}, 0);
+  const EvidenceGrid map = fuseEvidence({submap}, {gaussian({0, 0, 0})}, 0).unpacked();
   EXPECT_NEAR(map.resolution(), 0.1, 1e-12);
   EXPECT_EQ(map.observedCells(), 2u);
   EXPECT_NEAR(logOddsAt(map, 0.25, 0.35), 3.5, 1e-5);
@@ -191,7 +191,8 @@ TEST(FuseEvidence, WeighsSubmapsAsInEquation15) {
   auto a = emptySubmap(), b = emptySubmap();
   set(*a, 0.25, 0.35, 6, 2);
   set(*b, 0.35, -0.25, 5, 1);  // turned by a quarter: lands on (0.25, 0.35)
-  const EvidenceGrid map = fuseEvidence({a, b}, {gaussian({0, 0, 0}), gaussian({0, 0, kQuarterTurn})}, 0);
+  const EvidenceGrid map =
+      fuseEvidence({a, b}, {gaussian({0, 0, 0}), gaussian({0, 0, kQuarterTurn})}, 0).unpacked();
   // omega = 2/3 and 1/3: (2/3 · 6 + 1/3 · 5) / (4/9 + 1/9)
   EXPECT_NEAR(logOddsAt(map, 0.25, 0.35), (17.0 / 3) / (5.0 / 9), 1e-5);
   EXPECT_NEAR(hitsAt(map, 0.25, 0.35), 3, 1e-5);
@@ -202,14 +203,14 @@ TEST(FuseEvidence, ConsistentEvidenceAddsUp) {
   auto a = emptySubmap(), b = emptySubmap();
   set(*a, 0.25, 0.35, 6, 2);
   set(*b, 0.25, 0.35, 15, 5);
-  const EvidenceGrid map = fuseEvidence({a, b}, {gaussian({0, 0, 0}), gaussian({0, 0, 0})}, 0);
+  const EvidenceGrid map = fuseEvidence({a, b}, {gaussian({0, 0, 0}), gaussian({0, 0, 0})}, 0).unpacked();
   EXPECT_NEAR(logOddsAt(map, 0.25, 0.35), 21, 1e-4);
 }
 
 TEST(FuseEvidence, InterpolatesBetweenCells) {
   auto submap = emptySubmap();
   set(*submap, 0.05, 0.05, 4, 4);
-  const EvidenceGrid map = fuseEvidence({submap}, {gaussian({0.025, 0.05, 0})}, 0);
+  const EvidenceGrid map = fuseEvidence({submap}, {gaussian({0.025, 0.05, 0})}, 0).unpacked();
   EXPECT_EQ(map.observedCells(), 4u);
   EXPECT_NEAR(hitsAt(map, 0.05, 0.05), 4 * 0.75 * 0.5, 1e-4);
   EXPECT_NEAR(hitsAt(map, 0.15, 0.05), 4 * 0.25 * 0.5, 1e-4);
@@ -221,7 +222,7 @@ TEST(FuseEvidence, ReachesTheBorderOfTheGridAndFarFrames) {
   auto submap = emptySubmap();
   set(*submap, -0.95, -0.95, 1, 1);
   set(*submap, 0.95, 0.95, 2, 1);
-  const EvidenceGrid map = fuseEvidence({submap}, {gaussian({-300, 200, 0})}, 0.1);
+  const EvidenceGrid map = fuseEvidence({submap}, {gaussian({-300, 200, 0})}, 0.1).unpacked();
   EXPECT_NEAR(logOddsAt(map, -300.95, 199.05), 1, 1e-4);
   EXPECT_NEAR(logOddsAt(map, -299.05, 200.95), 2, 1e-4);
   EXPECT_LE(map.cells(), 21u * 21u);
@@ -243,7 +244,7 @@ TEST(FuseEvidence, AFrameAlmostParallelToTheAxesIsLikeAParallelOne) {
   set(*submaps[0], 0.05, 0.05, 1, 1);
   set(*submaps[1], 0.05, 0.05, 2, 1);
   for (const double phi : {1e-7, -1e-8, 1e-10}) {
-    const EvidenceGrid map = fuseEvidence(submaps, {gaussian({}), gaussian({4, 40, phi})}, 0.1);
+    const EvidenceGrid map = fuseEvidence(submaps, {gaussian({}), gaussian({4, 40, phi})}, 0.1).unpacked();
     EXPECT_NEAR(logOddsAt(map, 0.05, 0.05), 1, 1e-5);
     EXPECT_NEAR(logOddsAt(map, 4.05, 40.05), 2, 1e-4);
   }
@@ -252,7 +253,7 @@ TEST(FuseEvidence, AFrameAlmostParallelToTheAxesIsLikeAParallelOne) {
 TEST(FuseEvidence, AHugeMapIsMadeCoarserUnlessAskedFor) {
   GridSubmaps submaps{emptySubmap(), emptySubmap()};
   for (const auto& submap : submaps) set(*submap, 0.05, 0.05, 1, 1);
-  const EvidenceGrid map = fuseEvidence(submaps, {gaussian({}), gaussian({600, 500, 0})}, 0);
+  const EvidenceGrid map = fuseEvidence(submaps, {gaussian({}), gaussian({600, 500, 0})}, 0).unpacked();
   EXPECT_DOUBLE_EQ(map.resolution(), 0.2);
   EXPECT_EQ(fuseEvidence(submaps, {gaussian({}), gaussian({60, 50, 0})}, 0).resolution(), 0.1);
 }
@@ -265,7 +266,7 @@ TEST(FuseEvidence, AMapWithSeveralTilesHasNoSeam) {
     for (int x = 0; x < 20; ++x) set(*far, -0.95 + 0.1 * x, -0.95 + 0.1 * y, value(x, y), 2);
   // The first tile ends 1024 cells from the left edge of the map, in the middle of the far submap.
   const TPose2D frame(101.3, 0, 0);
-  const EvidenceGrid map = fuseEvidence({here, far}, {gaussian({0, 0, 0}), gaussian(frame)}, 0.1);
+  const EvidenceGrid map = fuseEvidence({here, far}, {gaussian({0, 0, 0}), gaussian(frame)}, 0.1).unpacked();
   EXPECT_EQ(map.observedCells(), 401u);
   for (int y = 0; y < 20; ++y)
     for (int x = 0; x < 20; ++x)
@@ -292,7 +293,7 @@ TEST(FuseEvidence, SameBitsForAnyNumberOfThreads) {
   }
   const auto with = [&](std::size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    return fuseEvidence(submaps, frames, 0.07);
+    return fuseEvidence(submaps, frames, 0.07).unpacked();
   };
   const EvidenceGrid one = with(1), two = with(2);
   EXPECT_GT(one.observedCells(), 400u);

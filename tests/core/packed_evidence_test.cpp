@@ -5,6 +5,7 @@
 #include <mrpt/serialization/CArchive.h>
 #include <submap_slam/core/joined_map.h>
 
+#include <cmath>
 #include <sstream>
 
 namespace submap_slam {
@@ -33,6 +34,13 @@ void expectSameGrid(const EvidenceGrid& a, const EvidenceGrid& b) {
   EXPECT_EQ(a.hits.data(), b.hits.data());
 }
 
+std::string archived(const PackedEvidence& evidence) {
+  mrpt::io::CMemoryStream stream;
+  auto archive = mrpt::serialization::archiveFrom(stream);
+  evidence.writeTo(archive);
+  return {static_cast<const char*>(stream.getRawBufferData()), stream.getTotalBytesCount()};
+}
+
 GridSubmap::Ptr submapWith(const EvidenceGrid& grid) {
   auto submap = GridSubmap::Create();
   submap->evidence = grid;
@@ -57,10 +65,7 @@ TEST(PackedEvidence, ReadsBackWhatItWrote) {
 }
 
 TEST(PackedEvidence, RefusesDamagedLimitsAndBlocks) {
-  mrpt::io::CMemoryStream stream;
-  auto archive = mrpt::serialization::archiveFrom(stream);
-  PackedEvidence(sparseGrid()).writeTo(archive);
-  const std::string whole(static_cast<const char*>(stream.getRawBufferData()), stream.getTotalBytesCount());
+  const std::string whole = archived(PackedEvidence(sparseGrid()));
   const auto readDamaged = [&](std::size_t byte) {
     std::string bytes = whole;
     bytes[byte] = static_cast<char>(bytes[byte] ^ 0x40);
@@ -86,12 +91,48 @@ TEST(PackedEvidence, VisitsEachObservedCellOnce) {
   EXPECT_EQ(visits, grid.observedCells());
 }
 
-TEST(PackedEvidence, CopiesOnlyWhatLiesInside) {
-  EvidenceGrid to(0, 1, 0, 1, 0.1);
-  PackedEvidence(sparseGrid()).copyTo(to, -7, -3);
-  EXPECT_EQ(to.observedCells(), 3u) << "cells (7, 3), (8, 3) and (8, 8)";
-  EXPECT_EQ(*to.hits.cellByIndex(0, 0), 2.0f);
-  EXPECT_EQ(*to.hits.cellByIndex(1, 5), 4.0f);
+TEST(PackedEvidence, FilledInAnyOrderIsLikeTheGrid) {
+  const EvidenceGrid grid = sparseGrid();
+  std::vector<std::pair<unsigned, unsigned>> cells;
+  for (unsigned y = 0; y < grid.sizeY(); ++y)
+    for (unsigned x = 0; x < grid.sizeX(); ++x)
+      if (*grid.hits.cellByIndex(x, y) > 0) cells.emplace_back(x, y);
+  PackedEvidence filled(-1.2, 1.9, -0.8, 1.5, 0.1);
+  for (; !cells.empty(); cells.pop_back()) {
+    const auto [x, y] = cells.back();
+    filled.set(static_cast<int>(x), static_cast<int>(y), 7, 1);
+    filled.set(static_cast<int>(x), static_cast<int>(y), *grid.log_odds.cellByIndex(x, y),
+               *grid.hits.cellByIndex(x, y));
+  }
+  expectSameGrid(filled.unpacked(), grid);
+  EXPECT_EQ(archived(filled), archived(PackedEvidence(grid)));
+  EXPECT_EQ(filled.observedCells(), 6u);
+}
+
+TEST(PackedEvidence, KnowsWhatWasObserved) {
+  PackedEvidence evidence(-5, 5, -5, 5, 0.1);
+  EXPECT_TRUE(evidence.observedRange().empty());
+  EXPECT_EQ(evidence.observedCells(), 0u);
+  evidence.set(30, 7, -1, 2);
+  evidence.set(12, 9, 1, 2);
+  const CellRange range = evidence.observedRange();
+  EXPECT_EQ(range.x_first, 12);
+  EXPECT_EQ(range.x_last, 30);
+  EXPECT_EQ(range.y_first, 7);
+  EXPECT_EQ(range.y_last, 9);
+  EXPECT_EQ(range.columns(), 19);
+  EXPECT_EQ(range.rows(), 3);
+}
+
+TEST(PackedEvidence, MrptsGridHoldsTheProbabilityOfFreeSpace) {
+  PackedEvidence evidence(0, 0.3, 0, 0.1, 0.1);
+  evidence.set(0, 0, static_cast<float>(std::log(3.0)), 1);
+  evidence.set(1, 0, -300, 100);
+  const auto map = evidence.toOccupancyGrid();
+  EXPECT_EQ(map.getSizeX(), 3u);
+  EXPECT_NEAR(map.getPos(0.05f, 0.05f), 0.25, 0.02);
+  EXPECT_GT(map.getPos(0.15f, 0.05f), 0.99f);
+  EXPECT_NEAR(map.getPos(0.25f, 0.05f), 0.5, 0.01);
 }
 
 TEST(EvidenceSummary, SaysWhatIsThere) {
@@ -170,10 +211,10 @@ TEST(UnloadedSubmap, FusesToTheSameMap) {
   const GridSubmaps submaps{submapWith(sparseGrid()), submapWith(sparseGrid())};
   std::vector<mrpt::poses::CPosePDFGaussian> frames(2);
   frames[1].mean = mrpt::poses::CPose2D(0.33, -0.21, 0.7);
-  const EvidenceGrid loaded = fuseEvidence(submaps, frames, 0);
+  const EvidenceGrid loaded = fuseEvidence(submaps, frames, 0).unpacked();
   submaps[0]->unload();
   EXPECT_GT(loaded.observedCells(), 20u);
-  expectSameGrid(fuseEvidence(submaps, frames, 0), loaded);
+  expectSameGrid(fuseEvidence(submaps, frames, 0).unpacked(), loaded);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ JoinedMap oneSubmapAt(const TPose2D& T_w_s) {
 }
 
 EvidenceGrid drawn(const GridSubmaps& submaps, const JoinedMap& joined) {
-  return mapFromScans(submaps, joined, {}, 0).value();
+  return mapFromScans(submaps, joined, {}, 0).value().unpacked();
 }
 
 /** Share of the cells called occupied in a grid that are called so in another. */
@@ -69,7 +69,7 @@ TEST(MapFromScans, ASubmapAtTheOriginIsItsOwnMap) {
   };
   EXPECT_NEAR(sum(map.hits), sum(evidence->hits), 1e-3 * sum(evidence->hits));
   EXPECT_NEAR(sum(map.log_odds), sum(evidence->log_odds), 1e-3 * sum(evidence->hits));
-  EXPECT_TRUE(map.isCropped());
+  EXPECT_EQ(map.cropped().cells(), map.cells());
 }
 
 TEST(MapFromScans, LosesNoWallsWhereTheSubmapIsTurned) {
@@ -89,7 +89,7 @@ TEST(MapFromScans, LosesNoWallsWhereTheSubmapIsTurned) {
   }
   const EvidenceGrid truth = renderEvidence(placed, {});
   EXPECT_GT(sharedWalls(truth, drawn(one, joined)), 0.999);
-  EXPECT_LT(sharedWalls(truth, fuseEvidence(one, joined.frames, 0)), 0.99);
+  EXPECT_LT(sharedWalls(truth, fuseEvidence(one, joined.frames, 0).unpacked()), 0.99);
 }
 
 TEST(MapFromScans, NodesAreWhereJoinersMovedThem) {

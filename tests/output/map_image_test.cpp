@@ -44,16 +44,16 @@ bool isWhite(const unsigned char* c) { return c[0] > 245 && c[1] > 245 && c[2] >
 bool isDark(const unsigned char* c) { return c[0] < 40 && c[1] < 40 && c[2] < 45; }
 
 /** A long corridor: free, with a wall of one cell along its upper side. */
-EvidenceGrid corridor(unsigned length, unsigned width = 10) {
+PackedEvidence corridor(unsigned length, unsigned width = 10) {
   EvidenceGrid grid(0, 0.1 * length, 0, 0.1 * width, 0.1);
   for (unsigned cx = 0; cx < length; ++cx)
     for (unsigned cy = 0; cy < width; ++cy) setCell(grid, cx, cy, cy + 1 == width ? 6.0f : -6.0f);
-  return grid;
+  return PackedEvidence(grid);
 }
 
 class MapImage : public testing::Test {
  protected:
-  Picture write(const EvidenceGrid& map, const Trajectory& trajectory,
+  Picture write(const PackedEvidence& map, const Trajectory& trajectory,
                 const std::vector<CPosePDFGaussian>& frames, int max_side = 4000) const {
     writeMapImage(folder.file("map.png"), map, trajectory, frames, max_side);
     return readPng(folder.file("map.png"));
@@ -106,9 +106,9 @@ TEST_F(MapImage, LargeMapStaysWithinTheLimitAndKeepsThinWalls) {
 }
 
 TEST_F(MapImage, SmallestAndEmptyMapsAreDrawn) {
-  EXPECT_GT(write(EvidenceGrid(), {}, {}).width, 0);
-  EvidenceGrid one(0, 1, 0, 1, 1);
-  setCell(one, 0, 0, 5);
+  EXPECT_GT(write(PackedEvidence(), {}, {}).width, 0);
+  PackedEvidence one;
+  one.set(0, 0, 5, 1);
   EXPECT_GT(write(one, {stamped(0, 0, 0, 0)}, {gaussian(0, 0, 0)}).count(isDark), 0);
 }
 

@@ -62,6 +62,19 @@ TEST(WriteGridMap, MrptReadsTheSameGrid) {
   EXPECT_NEAR(map.getPos(0.75f, 2.25f), 0.5f, 1e-3f);
 }
 
+TEST(WriteGridMap, MrptReadsALargeGridThatIsCompressedInPieces) {
+  const TempFolder folder;
+  PackedEvidence large(0, 150, 0, 160, 0.1);  // 2.4 MB
+  for (int k = 0; k < 1500; ++k) large.set(k, k, k % 2 == 0 ? 4 : -4, 1);
+  writeGridMap(folder.file("large.gridmap.gz"), large);
+  mrpt::io::CFileGZInputStream in(folder.file("large.gridmap.gz"));
+  mrpt::maps::COccupancyGridMap2D map;
+  mrpt::serialization::archiveFrom(in) >> map;
+  const auto expected = large.toOccupancyGrid();
+  ASSERT_EQ(map.getSizeX(), expected.getSizeX());
+  EXPECT_EQ(map.getRawMap(), expected.getRawMap());
+}
+
 TEST(WriteGridMap, GzipHeaderHasNoTime) {
   const TempFolder folder;
   writeGridMap(folder.file("map.gridmap.gz"), sampleGrid());
@@ -128,7 +141,7 @@ TEST(WriteScene, MrptFindsMapTrajectoryAndFrames) {
 TEST(WriteScene, FixedFramesAndEmptyResultsAreFine) {
   const TempFolder folder;
   const CPosePDFGaussian fixed(mrpt::poses::CPose2D(), mrpt::math::CMatrixDouble33::Zero());
-  writeScene(folder.file("a.3Dscene"), EvidenceGrid(), {}, {fixed});
+  writeScene(folder.file("a.3Dscene"), PackedEvidence(), {}, {fixed});
   mrpt::opengl::COpenGLScene scene;
   EXPECT_TRUE(scene.loadFromFile(folder.file("a.3Dscene")));
 }

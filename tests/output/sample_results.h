@@ -2,7 +2,6 @@
 #pragma once
 
 #include <mrpt/core/Clock.h>
-#include <submap_slam/core/evidence_grid.h>
 #include <submap_slam/core/joined_map.h>
 
 #include <vector>
@@ -26,7 +25,7 @@ inline void setCell(EvidenceGrid& grid, unsigned cx, unsigned cy, float log_odds
 /** 4 × 3 cells of 0.5 m with lower-left corner (-1, 2); the rows from the lowest up, from left to right:
  * occupied, free, unknown, unknown / free, free, observed but undecided, unknown / unknown, unknown,
  * occupied, free. */
-inline EvidenceGrid sampleGrid() {
+inline PackedEvidence sampleGrid() {
   EvidenceGrid grid(-1, 1, 2, 3.5, 0.5);
   setCell(grid, 0, 0, 4);
   setCell(grid, 1, 0, -4);
@@ -35,7 +34,7 @@ inline EvidenceGrid sampleGrid() {
   setCell(grid, 2, 1, 0.1f);
   setCell(grid, 2, 2, 4);
   setCell(grid, 3, 2, -4);
-  return grid;
+  return PackedEvidence(grid);
 }
 
 inline StampedPose stamped(double t, double x, double y, double phi) {

@@ -99,8 +99,8 @@ TEST_F(GridGaussNewtonPlugin, AMaskedSubmapFollowsTheChainAndGivesNothingToTheMa
   EXPECT_EQ(joined.status, JoinStatus::kConverged) << joined.reason;
   const TPose2D link = room.submaps[1]->end_pose.mean.asTPose();
   EXPECT_LT(distance(frameOf(joined, 2), frameOf(joined, 1) + link), 1e-3);
-  const EvidenceGrid map = fuseEvidence(masked, joined.frames, 0.1);
-  const EvidenceGrid without =
+  const PackedEvidence map = fuseEvidence(masked, joined.frames, 0.1);
+  const PackedEvidence without =
       fuseEvidence({masked[0], masked[1]}, {joined.frames[0], joined.frames[1]}, 0.1);
   EXPECT_EQ(map.observedCells(), without.observedCells());
 }

@@ -28,9 +28,9 @@ TEST(MapPicture, ShowsTheObservedPartFromTheTop) {
 }
 
 TEST(MapPicture, LeavesOutWhatNobodySaw) {
-  EvidenceGrid grid(-50, 50, -50, 50, 0.5);
-  setCell(grid, 100, 90, -5);
-  setCell(grid, 102, 91, 5);
+  PackedEvidence grid(-50, 50, -50, 50, 0.5);
+  grid.set(100, 90, -5, 1);
+  grid.set(102, 91, 5, 1);
   const MapPicture picture = mapPicture(grid, 100);
   EXPECT_EQ(picture.width, 3);
   EXPECT_EQ(picture.height, 2);
@@ -48,7 +48,7 @@ TEST(MapPicture, OfCellsThatShareAPixelTheMostOccupiedOneShows) {
 }
 
 TEST(MapPicture, OfNothingIsEmpty) {
-  EXPECT_THAT(mapPicture(EvidenceGrid(), 100).shades, ElementsAre(kUnknown));
+  EXPECT_THAT(mapPicture(PackedEvidence(), 100).shades, ElementsAre(kUnknown));
 }
 
 TEST(MapPicture, OfMrptsMapIsTheSameWhereItIsNotMoved) {

@@ -15,7 +15,7 @@ using ::testing::ElementsAre;
 GridSubmap::Ptr submapAt(uint32_t id, double start_s) {
   auto submap = GridSubmap::Create();
   submap->id = id;
-  submap->evidence = sampleGrid();
+  submap->evidence = sampleGrid().unpacked();
   for (int n = 0; n < 3; ++n)
     submap->nodes.push_back({mrpt::Clock::fromDouble(start_s + n), {n * 1.0, 0, 0}, {}, {}});
   return submap;

@@ -90,30 +90,6 @@ EvidenceGrid EvidenceGrid::cropped() const {
   return out;
 }
 
-bool EvidenceGrid::isCropped() const {
-  CellBox box{};
-  return observedBox(hits, box) && box.x0 == 0 && box.y0 == 0 && box.x1 + 1 == sizeX() &&
-         box.y1 + 1 == sizeY();
-}
-
-double EvidenceGrid::occupancy(std::size_t cx, std::size_t cy) const {
-  const float l = *log_odds.cellByIndex(static_cast<unsigned>(cx), static_cast<unsigned>(cy));
-  return 1.0 / (1.0 + std::exp(-static_cast<double>(l)));
-}
-
-mrpt::maps::COccupancyGridMap2D EvidenceGrid::toOccupancyGrid() const {
-  using Map = mrpt::maps::COccupancyGridMap2D;
-  Map map(static_cast<float>(log_odds.getXMin()), static_cast<float>(log_odds.getXMax()),
-          static_cast<float>(log_odds.getYMin()), static_cast<float>(log_odds.getYMax()),
-          static_cast<float>(resolution()));
-  for (std::size_t cy = 0; cy < sizeY(); ++cy)
-    for (std::size_t cx = 0; cx < sizeX(); ++cx) {
-      const auto free = static_cast<float>(1.0 - occupancy(cx, cy));
-      map.setCell(static_cast<int>(cx), static_cast<int>(cy), free);
-    }
-  return map;
-}
-
 void EvidenceGrid::writeTo(mrpt::serialization::CArchive& out) const {
   out << log_odds.getXMin() << log_odds.getYMin() << resolution() << static_cast<uint32_t>(sizeX())
       << static_cast<uint32_t>(sizeY());
@@ -135,5 +111,7 @@ EvidenceGrid EvidenceGrid::readFrom(mrpt::serialization::CArchive& in) {
   readCells(in, grid.hits);
   return grid;
 }
+
+double occupancyOf(float log_odds) { return 1.0 / (1.0 + std::exp(-static_cast<double>(log_odds))); }
 
 }  // namespace submap_slam

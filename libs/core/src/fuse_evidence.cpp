@@ -18,7 +18,7 @@ using mrpt::poses::CPosePDFGaussian;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/** Largest map that is made without being asked for: 160 MB. */
+/** Largest map that is made without being asked for: 160 MB if all of it is observed. */
 constexpr double kMostCells = 2e7;
 
 /** The map is made in squares of that many cells a side, so that the sums take little memory, and only the
@@ -138,7 +138,7 @@ class MapLattice {
   double yOf(int row) const { return along_y_.hits.idx2y(row); }
 
   /** The part of the map from cell (column, row) on, without any evidence yet. */
-  EvidenceGrid part(int column, int row, int width, int height) const {
+  PackedEvidence part(int column, int row, int width, int height) const {
     const double r = resolution(), x0 = along_x_.hits.getXMin(), y0 = along_y_.hits.getYMin();
     return {x0 + r * column, x0 + r * (column + width), y0 + r * row, y0 + r * (row + height), r};
   }
@@ -179,14 +179,13 @@ class FusionTile {
   }
 
   PackedEvidence fused() const {
-    EvidenceGrid grid = map_.part(column_, row_, width_, height_);
-    for (std::size_t k = 0; k < sums_.size(); ++k) {
-      const FusionSums& s = sums_[k];
-      if (s.n < kLeastHits) continue;
-      grid.log_odds.begin()[static_cast<std::ptrdiff_t>(k)] = static_cast<float>(s.n * s.nl / s.nn);
-      grid.hits.begin()[static_cast<std::ptrdiff_t>(k)] = static_cast<float>(s.n);
-    }
-    return PackedEvidence(grid);
+    PackedEvidence evidence = map_.part(column_, row_, width_, height_);
+    auto s = sums_.begin();
+    for (int cy = 0; cy < height_; ++cy)
+      for (int cx = 0; cx < width_; ++cx, ++s)
+        if (s->n >= kLeastHits)
+          evidence.set(cx, cy, static_cast<float>(s->n * s->nl / s->nn), static_cast<float>(s->n));
+    return evidence;
   }
 
  private:
@@ -220,18 +219,20 @@ FusedTile fuseTile(const MapLattice& map, int column, int row, const std::vector
 
 /** The smallest grid that holds every observed cell. The tiles are given up one by one, not to have the map
  * twice. */
-EvidenceGrid assembled(const MapLattice& map, std::vector<FusedTile> tiles) {
+PackedEvidence assembled(const MapLattice& map, std::vector<FusedTile> tiles) {
   int left = map.columns(), right = -1, low = map.rows(), high = -1;
   for (const FusedTile& tile : tiles)
-    tile.evidence.forEachObserved([&](int cx, int cy, float, float) {
-      left = std::min(left, tile.column + cx), right = std::max(right, tile.column + cx);
-      low = std::min(low, tile.row + cy), high = std::max(high, tile.row + cy);
-    });
-  if (right < left) return EvidenceGrid(0, map.resolution(), 0, map.resolution(), map.resolution());
-  EvidenceGrid whole = map.part(left, low, right - left + 1, high - low + 1);
+    if (const CellRange seen = tile.evidence.observedRange(); !seen.empty()) {
+      left = std::min(left, tile.column + seen.x_first), right = std::max(right, tile.column + seen.x_last);
+      low = std::min(low, tile.row + seen.y_first), high = std::max(high, tile.row + seen.y_last);
+    }
+  if (right < left) return PackedEvidence(0, map.resolution(), 0, map.resolution(), map.resolution());
+  PackedEvidence whole = map.part(left, low, right - left + 1, high - low + 1);
   for (; !tiles.empty(); tiles.pop_back()) {
     const FusedTile& tile = tiles.back();
-    tile.evidence.copyTo(whole, tile.column - left, tile.row - low);
+    tile.evidence.forEachObserved([&](int cx, int cy, float log_odds, float hits) {
+      whole.set(tile.column + cx - left, tile.row + cy - low, log_odds, hits);
+    });
   }
   return whole;
 }
@@ -274,8 +275,8 @@ double mapResolution(const GridSubmaps& submaps, const std::vector<CPosePDFGauss
   return placed.empty() ? 0 : resolutionOf(placed, wanted);
 }
 
-EvidenceGrid fuseEvidence(const GridSubmaps& submaps, const std::vector<CPosePDFGaussian>& frames,
-                          double resolution) {
+PackedEvidence fuseEvidence(const GridSubmaps& submaps, const std::vector<CPosePDFGaussian>& frames,
+                            double resolution) {
   const std::vector<PlacedSubmap> placed = placedSubmaps(submaps, frames);
   if (placed.empty()) return {};
   const MapLattice map(boxOf(placed), resolutionOf(placed, resolution));

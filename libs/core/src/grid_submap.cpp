@@ -240,7 +240,7 @@ std::string GridSubmap::exportTxtDataRow() const {
 
 void GridSubmap::getVisualizationInto(mrpt::opengl::CSetOfObjects& out) const {
   out.clear();
-  LoadedEvidence(*this)->toOccupancyGrid().getVisualizationInto(out);
+  packedEvidence()->toOccupancyGrid().getVisualizationInto(out);
   auto path = mrpt::opengl::CSetOfLines::Create();
   path->setColor_u8(0x20, 0x60, 0xd0);
   path->setLineWidth(2);

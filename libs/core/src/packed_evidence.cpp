@@ -22,9 +22,17 @@ PackedEvidence::PackedEvidence(double x_min, double x_max, double y_min, double 
       numbers_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), -1),
       reach_(static_cast<std::size_t>(columns_ + 1) * static_cast<std::size_t>(rows_ + 1), 0) {}
 
-PackedEvidence::PackedEvidence(const EvidenceGrid& grid)
-    : PackedEvidence(grid.hits.getXMin(), grid.hits.getXMax(), grid.hits.getYMin(), grid.hits.getYMax(),
-                     grid.resolution(), grid.sizeX(), grid.sizeY()) {
+PackedEvidence::PackedEvidence(const EvidenceLayer& along_x, const EvidenceLayer& along_y)
+    : PackedEvidence(along_x.getXMin(), along_x.getXMax(), along_y.getYMin(), along_y.getYMax(),
+                     along_x.getResolution(), along_x.getSizeX(), along_y.getSizeY()) {}
+
+PackedEvidence::PackedEvidence(double x_min, double x_max, double y_min, double y_max, double resolution)
+    : PackedEvidence(EvidenceGrid(x_min, x_max, 0, resolution, resolution).hits,
+                     EvidenceGrid(0, resolution, y_min, y_max, resolution).hits) {
+  cells_.reserve(numbers_.size());  // address space alone: what is never written to takes no memory
+}
+
+PackedEvidence::PackedEvidence(const EvidenceGrid& grid) : PackedEvidence(grid.hits, grid.hits) {
   for (int by = 0; by < rows_; ++by)
     for (int bx = 0; bx < columns_; ++bx) packBlock(grid, bx, by);
   cells_.shrink_to_fit();
@@ -45,9 +53,13 @@ void PackedEvidence::packBlock(const EvidenceGrid& grid, int bx, int by) {
 }
 
 void PackedEvidence::store(const Block& block, int bx, int by) {
-  numbers_[static_cast<std::size_t>(by) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(bx)] =
-      static_cast<int32_t>(cells_.size());
+  place(cells_.size(), bx, by);
   cells_.push_back(block);
+}
+
+/** Tells where the block with that number is. */
+void PackedEvidence::place(std::size_t number, int bx, int by) {
+  numbers_[tableIndex(bx, by)] = static_cast<int32_t>(number);
   for (const int y : {by, by + 1})  // also reached from the last cells of the blocks before it
     for (const int x : {bx, bx + 1})
       reach_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_ + 1) +
@@ -56,25 +68,44 @@ void PackedEvidence::store(const Block& block, int bx, int by) {
 
 EvidenceGrid PackedEvidence::unpacked() const {
   EvidenceGrid grid(x_min_, x_max_, y_min_, y_max_, resolution_);
-  copyTo(grid, 0, 0);
-  return grid;
-}
-
-void PackedEvidence::copyTo(EvidenceGrid& grid, int column, int row) const {
-  const int width = static_cast<int>(grid.sizeX()), height = static_cast<int>(grid.sizeY());
   for (int by = 0; by < rows_; ++by)
     for (int bx = 0; bx < columns_; ++bx) {
       const Block* block = blockAt(bx, by);
       if (!block) continue;
-      const int x0 = column + bx * kSide, y0 = row + by * kSide;
-      const int left = std::max(0, x0), right = std::min(width, x0 + kSide);
-      for (int y = std::max(0, y0); left < right && y < std::min(height, y0 + kSide); ++y) {
-        const auto to = static_cast<std::ptrdiff_t>(y) * width + left;
-        const auto from = (y - y0) * kSide + left - x0;
-        std::copy_n(block->log_odds.begin() + from, right - left, grid.log_odds.begin() + to);
-        std::copy_n(block->hits.begin() + from, right - left, grid.hits.begin() + to);
+      const int x0 = bx * kSide, y0 = by * kSide, width = std::min(kSide, sizeX() - x0);
+      for (int y = y0; y < std::min(sizeY(), y0 + kSide); ++y) {
+        const auto to = static_cast<std::ptrdiff_t>(y) * sizeX() + x0;
+        const auto from = (y - y0) * kSide;
+        std::copy_n(block->log_odds.begin() + from, width, grid.log_odds.begin() + to);
+        std::copy_n(block->hits.begin() + from, width, grid.hits.begin() + to);
       }
     }
+  return grid;
+}
+
+mrpt::maps::COccupancyGridMap2D PackedEvidence::toOccupancyGrid() const {
+  mrpt::maps::COccupancyGridMap2D map(static_cast<float>(x_min_), static_cast<float>(x_max_),
+                                      static_cast<float>(y_min_), static_cast<float>(y_max_),
+                                      static_cast<float>(resolution_));  // all cells 0.5
+  forEachObserved([&map](int cx, int cy, float log_odds, float) {
+    map.setCell(cx, cy, static_cast<float>(1.0 - occupancyOf(log_odds)));
+  });
+  return map;
+}
+
+std::size_t PackedEvidence::observedCells() const {
+  std::size_t cells = 0;
+  forEachObserved([&cells](int, int, float, float) { ++cells; });
+  return cells;
+}
+
+CellRange PackedEvidence::observedRange() const {
+  CellRange range{sizeX(), -1, sizeY(), -1};
+  forEachObserved([&range](int cx, int cy, float, float) {
+    range.x_first = std::min(range.x_first, cx), range.x_last = std::max(range.x_last, cx);
+    range.y_first = std::min(range.y_first, cy), range.y_last = std::max(range.y_last, cy);
+  });
+  return range;
 }
 
 std::size_t PackedEvidence::bytes() const {
@@ -82,7 +113,7 @@ std::size_t PackedEvidence::bytes() const {
          reach_.capacity();
 }
 
-/** Positions of the stored blocks, row by row, in the order in which they are stored. */
+/** Positions of the stored blocks, row by row. */
 std::vector<uint32_t> PackedEvidence::storedPositions() const {
   std::vector<uint32_t> positions;
   positions.reserve(cells_.size());
@@ -97,8 +128,10 @@ void PackedEvidence::writeTo(mrpt::serialization::CArchive& out) const {
       << static_cast<uint32_t>(ny_) << static_cast<uint32_t>(positions.size());
   if (positions.empty()) return;
   out.WriteBufferFixEndianness(positions.data(), positions.size());
-  static_assert(sizeof(Block) == 2 * kSide * kSide * sizeof(float), "blocks lie one behind the other");
-  out.WriteBufferFixEndianness(cells_.front().log_odds.data(), cells_.size() * sizeof(Block) / sizeof(float));
+  for (const uint32_t position : positions) {
+    const Block& block = cells_[static_cast<std::size_t>(numbers_[position])];
+    out.WriteBufferFixEndianness(block.log_odds.data(), sizeof(Block) / sizeof(float));
+  }
 }
 
 PackedEvidence PackedEvidence::readFrom(mrpt::serialization::CArchive& in) {
@@ -115,13 +148,14 @@ PackedEvidence PackedEvidence::readFrom(mrpt::serialization::CArchive& in) {
   if (blocks == 0) return packed;
   std::vector<uint32_t> positions(blocks);
   in.ReadBufferFixEndianness(positions.data(), positions.size());
-  packed.cells_.reserve(blocks);
+  packed.cells_.resize(blocks);
   for (std::size_t k = 0; k < blocks; ++k) {
     if (positions[k] >= packed.numbers_.size() || (k > 0 && positions[k] <= positions[k - 1]))
       throw std::runtime_error("evidence with blocks in the wrong places");
     const auto columns = static_cast<uint32_t>(packed.columns_);
-    packed.store({}, static_cast<int>(positions[k] % columns), static_cast<int>(positions[k] / columns));
+    packed.place(k, static_cast<int>(positions[k] % columns), static_cast<int>(positions[k] / columns));
   }
+  static_assert(sizeof(Block) == 2 * kSide * kSide * sizeof(float), "blocks lie one behind the other");
   in.ReadBufferFixEndianness(packed.cells_.front().log_odds.data(), blocks * sizeof(Block) / sizeof(float));
   return packed;
 }

@@ -1,3 +1,4 @@
+#include <malloc.h>
 #include <submap_slam/core/map_resolution.h>
 #include <submap_slam/mapping/evidence_renderer.h>
 #include <submap_slam/mapping/map_from_scans.h>
@@ -69,11 +70,11 @@ void forEachSubmap(const GridSubmaps& submaps, const JoinedMap& joined, const Gr
 
 }  // namespace
 
-std::optional<EvidenceGrid> mapFromScans(const GridSubmaps& submaps, const JoinedMap& joined,
-                                         const GridMapperParams& mapper, double resolution) {
+std::optional<PackedEvidence> mapFromScans(const GridSubmaps& submaps, const JoinedMap& joined,
+                                           const GridMapperParams& mapper, double resolution) {
   EvidenceParams params = mapper.evidence;
   params.resolution = mapResolution(submaps, joined.frames, resolution);
-  if (params.resolution <= 0) return EvidenceGrid();
+  if (params.resolution <= 0) return PackedEvidence();
   const auto first = std::find_if(submaps.begin(), submaps.end(), [](const auto& submap) {
     return submap->evidenceSummary().stored_cells > 0;
   });
@@ -86,6 +87,7 @@ std::optional<EvidenceGrid> mapFromScans(const GridSubmaps& submaps, const Joine
     return complete;
   });
   if (!complete) return std::nullopt;
+  malloc_trim(0);  // the scans left holes in the heap, and the cells are about to be there twice
   return cells.take(params.resolution);
 }
 

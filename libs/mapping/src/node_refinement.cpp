@@ -183,7 +183,7 @@ RefinedSubmaps refineNodes(const GridSubmaps& submaps, const JoinedMap& joined,
   addMoves(out, keys);
   out.joined = joined;
   out.joined.status = JoinStatus::kChained;  // the frames are no optimum of anything any more
-  out.joined.map = EvidenceGrid();
+  out.joined.map = PackedEvidence();
   out.joined.nodes.clear();
   std::vector<TPose2D> T_w_s, T_s_moved;
   for (std::size_t k = 0; k < submaps.size(); ++k) {

@@ -34,26 +34,26 @@ TiledEvidence::Extent TiledEvidence::observed() const {
   return extent;
 }
 
-void TiledEvidence::copy(const Place& place, const Tile& tile, const Extent& from, EvidenceGrid& grid) {
+void TiledEvidence::copy(const Place& place, const Tile& tile, const Extent& from, PackedEvidence& evidence) {
   forEachCell(place.second * kSide, place.first * kSide, kSide, [&](unsigned x, unsigned y, std::size_t k) {
     if (tile.hits[k] <= 0) return;
-    *grid.log_odds.cellByIndex(x - from.left, y - from.low) = tile.log_odds[k];
-    *grid.hits.cellByIndex(x - from.left, y - from.low) = tile.hits[k];
+    evidence.set(static_cast<int>(x - from.left), static_cast<int>(y - from.low), tile.log_odds[k],
+                 tile.hits[k]);
   });
 }
 
-EvidenceGrid TiledEvidence::take(double resolution) {
+PackedEvidence TiledEvidence::take(double resolution) {
   last_x_ = last_y_ = ~0u;
   const Extent extent = observed();
-  if (extent.empty()) return EvidenceGrid(0, resolution, 0, resolution, resolution);
+  if (extent.empty()) return PackedEvidence(0, resolution, 0, resolution, resolution);
   const auto limit = [resolution](unsigned cell) {
     return resolution * (static_cast<double>(cell) - static_cast<double>(kOrigin));
   };
-  EvidenceGrid grid(limit(extent.left), limit(extent.right + 1), limit(extent.low), limit(extent.high + 1),
-                    resolution);
+  PackedEvidence evidence(limit(extent.left), limit(extent.right + 1), limit(extent.low),
+                          limit(extent.high + 1), resolution);
   for (auto tile = tiles_.begin(); tile != tiles_.end(); tile = tiles_.erase(tile))
-    copy(tile->first, *tile->second, extent, grid);
-  return grid;
+    copy(tile->first, *tile->second, extent, evidence);
+  return evidence;
 }
 
 }  // namespace submap_slam

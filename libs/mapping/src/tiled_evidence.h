@@ -1,6 +1,6 @@
 #pragma once
 
-#include <submap_slam/core/evidence_grid.h>
+#include <submap_slam/core/packed_evidence.h>
 
 #include <array>
 #include <cstddef>
@@ -23,7 +23,7 @@ class TiledEvidence {
   }
 
   /** Gives all up for the smallest grid that holds every observed cell; one unknown cell if there is none. */
-  EvidenceGrid take(double resolution);
+  PackedEvidence take(double resolution);
 
  private:
   static constexpr unsigned kShift = 6, kSide = 1u << kShift, kMask = kSide - 1;
@@ -40,7 +40,7 @@ class TiledEvidence {
 
   void changeTile(unsigned x, unsigned y);
   Extent observed() const;
-  static void copy(const Place& place, const Tile& tile, const Extent& from, EvidenceGrid& grid);
+  static void copy(const Place& place, const Tile& tile, const Extent& from, PackedEvidence& evidence);
 
   std::map<Place, std::unique_ptr<Tile>> tiles_;
   Tile* last_ = nullptr;                  ///< beams stay in a tile for many cells

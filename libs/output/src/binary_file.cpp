@@ -4,18 +4,38 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 
 namespace submap_slam {
-void writeBytes(const std::string& file, const std::string& bytes) {
+
+BinaryFile::BinaryFile(const std::string& file) : file_(file) {
   errno = 0;
-  std::ofstream out(file, std::ios::binary);
-  if (out) out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  // A full disk may show only now.
-  if (out) out.close();
-  if (!out)
-    throw OutputError(file +
-                      ": cannot be written: " + (errno != 0 ? std::strerror(errno) : "unknown reason"));
+  out_.open(file, std::ios::binary);
+  noteFailure();
+}
+
+void BinaryFile::write(const char* bytes, std::size_t size) {
+  errno = 0;
+  out_.write(bytes, static_cast<std::streamsize>(size));
+  noteFailure();
+}
+
+void BinaryFile::close() {
+  errno = 0;
+  if (out_) out_.close();  // a full disk may show only now
+  noteFailure();
+  if (!out_)
+    throw OutputError(file_ +
+                      ": cannot be written: " + (error_ != 0 ? std::strerror(error_) : "unknown reason"));
+}
+
+void BinaryFile::noteFailure() {
+  if (!out_ && error_ == 0) error_ = errno;
+}
+
+void writeBytes(const std::string& file, const std::string& bytes) {
+  BinaryFile out(file);
+  out.write(bytes.data(), bytes.size());
+  out.close();
 }
 
 }  // namespace submap_slam

@@ -5,13 +5,13 @@
 #include <mrpt/opengl/CSetOfLines.h>
 #include <mrpt/opengl/CSetOfObjects.h>
 #include <mrpt/opengl/stock_objects.h>
-#include <submap_slam/core/gzip.h>
 #include <submap_slam/output/landmark_files.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "binary_file.h"
+#include "gzip_file.h"
 
 namespace submap_slam {
 namespace {
@@ -104,7 +104,7 @@ void writeLandmarkScene(const std::string& file, const JoinedLandmarks& joined, 
   scene.insert(landmarkObjects(joined.landmarks));
   scene.insert(frameObjects(joined.frames));
   scene.insert(pathLine(joined.frames.front().mean, path));
-  writeBytes(file, gzippedArchive(scene, GzipLevel::kUsual));
+  writeGzippedArchive(file, scene);
 }
 
 }  // namespace submap_slam

@@ -10,12 +10,11 @@
 #include <mrpt/opengl/CText.h>
 #include <mrpt/opengl/stock_objects.h>
 #include <mrpt/poses/CPose3DPDFGaussian.h>
-#include <submap_slam/core/gzip.h>
 #include <submap_slam/output/mrpt_files.h>
 
 #include <stdexcept>
 
-#include "binary_file.h"
+#include "gzip_file.h"
 
 namespace submap_slam {
 namespace {
@@ -41,7 +40,7 @@ void insertKeyNodes(const GridSubmap& submap, const std::vector<mrpt::math::TPos
   }
 }
 
-mrpt::opengl::CSetOfObjects::Ptr gridObject(const EvidenceGrid& map) {
+mrpt::opengl::CSetOfObjects::Ptr gridObject(const PackedEvidence& map) {
   auto grid = mrpt::opengl::CSetOfObjects::Create();
   map.toOccupancyGrid().getVisualizationInto(*grid);
   grid->setName("map");
@@ -84,7 +83,7 @@ mrpt::opengl::CEllipsoid2D::Ptr ellipseObject(const CPosePDFGaussian& frame) {
 }
 
 /** What writeScene and writeSceneLog write. */
-mrpt::opengl::COpenGLScene::Ptr mapScene(const EvidenceGrid& map, const Trajectory& trajectory,
+mrpt::opengl::COpenGLScene::Ptr mapScene(const PackedEvidence& map, const Trajectory& trajectory,
                                          const std::vector<CPosePDFGaussian>& frames) {
   auto scene = mrpt::opengl::COpenGLScene::Create();
   scene->insert(gridObject(map));
@@ -101,8 +100,8 @@ mrpt::opengl::COpenGLScene::Ptr mapScene(const EvidenceGrid& map, const Trajecto
 
 }  // namespace
 
-void writeGridMap(const std::string& file, const EvidenceGrid& map) {
-  writeBytes(file, gzippedArchive(map.toOccupancyGrid(), GzipLevel::kUsual));
+void writeGridMap(const std::string& file, const PackedEvidence& map) {
+  writeGzippedArchive(file, map.toOccupancyGrid());
 }
 
 void writeSimpleMap(const std::string& file, const GridSubmaps& submaps, const JoinedMap& joined) {
@@ -111,20 +110,20 @@ void writeSimpleMap(const std::string& file, const GridSubmaps& submaps, const J
   mrpt::maps::CSimpleMap map;
   for (std::size_t i = 0; i < submaps.size(); ++i)
     insertKeyNodes(*submaps[i], nodePosesOf(submaps, joined, i), joined.frames[i], map);
-  writeBytes(file, gzippedArchive(map, GzipLevel::kUsual));
+  writeGzippedArchive(file, map);
 }
 
-void writeScene(const std::string& file, const EvidenceGrid& map, const Trajectory& trajectory,
+void writeScene(const std::string& file, const PackedEvidence& map, const Trajectory& trajectory,
                 const std::vector<CPosePDFGaussian>& frames) {
-  writeBytes(file, gzippedArchive(*mapScene(map, trajectory, frames), GzipLevel::kUsual));
+  writeGzippedArchive(file, *mapScene(map, trajectory, frames));
 }
 
-void writeSceneLog(const std::string& file, const EvidenceGrid& map, const Trajectory& trajectory,
+void writeSceneLog(const std::string& file, const PackedEvidence& map, const Trajectory& trajectory,
                    const std::vector<CPosePDFGaussian>& frames) {
   mrpt::obs::CObservation3DScene observation;
   observation.timestamp = trajectory.empty() ? INVALID_TIMESTAMP : trajectory.back().stamp;
   observation.scene = mapScene(map, trajectory, frames);
-  writeBytes(file, gzippedArchive(observation, GzipLevel::kUsual));
+  writeGzippedArchive(file, observation);
 }
 
 }  // namespace submap_slam

@@ -10,20 +10,25 @@ namespace {
 
 constexpr double kOccupiedThreshold = 0.65, kFreeThreshold = 0.196;
 
+constexpr char kOccupied = 0, kFree = static_cast<char>(254), kUnknown = static_cast<char>(205);
+
 char grey(double occupancy) {
-  constexpr unsigned char kOccupied = 0, kFree = 254, kUnknown = 205;
-  if (occupancy > kOccupiedThreshold) return static_cast<char>(kOccupied);
-  return static_cast<char>(occupancy < kFreeThreshold ? kFree : kUnknown);
+  if (occupancy > kOccupiedThreshold) return kOccupied;
+  return occupancy < kFreeThreshold ? kFree : kUnknown;
 }
 
-std::string pgm(const EvidenceGrid& map) {
+std::string pgm(const PackedEvidence& map) {
   std::string out = fmt::format("P5\n{} {}\n255\n", map.sizeX(), map.sizeY());
-  for (std::size_t row = map.sizeY(); row-- > 0;)
-    for (std::size_t cx = 0; cx < map.sizeX(); ++cx) out += grey(map.occupancy(cx, row));
+  const std::size_t head = out.size(), width = static_cast<std::size_t>(map.sizeX());
+  out.resize(head + width * static_cast<std::size_t>(map.sizeY()), kUnknown);
+  map.forEachObserved([&](int cx, int cy, float log_odds, float) {
+    const auto row = static_cast<std::size_t>(map.sizeY() - 1 - cy);
+    out[head + row * width + static_cast<std::size_t>(cx)] = grey(occupancyOf(log_odds));
+  });
   return out;
 }
 
-std::string yaml(const EvidenceGrid& map, const std::string& image) {
+std::string yaml(const PackedEvidence& map, const std::string& image) {
   return fmt::format(
       "image: {}\n"
       "mode: trinary\n"
@@ -32,13 +37,12 @@ std::string yaml(const EvidenceGrid& map, const std::string& image) {
       "negate: 0\n"
       "occupied_thresh: {}\n"
       "free_thresh: {}\n",
-      image, map.resolution(), map.log_odds.getXMin(), map.log_odds.getYMin(), kOccupiedThreshold,
-      kFreeThreshold);
+      image, map.resolution(), map.xMin(), map.yMin(), kOccupiedThreshold, kFreeThreshold);
 }
 
 }  // namespace
 
-void writeRosMap(const std::string& yaml_file, const EvidenceGrid& map) {
+void writeRosMap(const std::string& yaml_file, const PackedEvidence& map) {
   const auto image = std::filesystem::path(yaml_file).replace_extension(".pgm");
   writeBytes(image.string(), pgm(map));
   writeBytes(yaml_file, yaml(map, image.filename().string()));

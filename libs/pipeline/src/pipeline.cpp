@@ -40,7 +40,7 @@ void reportLog(const StretchSource& source, Reporter& reporter) {
 }
 
 /** A map of nothing looks like a result; better to say why. */
-void requireObservations(const EvidenceGrid& map) {
+void requireObservations(const PackedEvidence& map) {
   if (map.observedCells() == 0)
     throw InputError(
         "the map would be empty: no scan has a valid beam between [reader] min_range and [mapper] max_range");

@@ -38,28 +38,8 @@ class Shades {
   std::array<uint8_t, kSteps> shade_{};
 };
 
-/** Columns and rows of the cells that were observed; first > last if none was. */
-struct CellRange {
-  std::size_t x_first, x_last = 0, y_first, y_last = 0;
-};
-
-CellRange observedRange(const EvidenceGrid& map) {
-  CellRange range{map.sizeX(), 0, map.sizeY(), 0};
-  const float* hits = map.hits.data().data();
-  for (std::size_t y = 0; y < map.sizeY(); ++y)
-    for (std::size_t x = 0; x < map.sizeX(); ++x)
-      if (hits[y * map.sizeX() + x] > 0) {
-        range.x_first = std::min(range.x_first, x), range.x_last = std::max(range.x_last, x);
-        range.y_first = std::min(range.y_first, y), range.y_last = std::max(range.y_last, y);
-      }
-  return range;
-}
-
 /** Smallest whole number of cells per pixel with which `cells` fit into `max_side` pixels. */
-std::size_t cellsPerPixel(std::size_t cells, int max_side) {
-  const auto side = static_cast<std::size_t>(max_side);
-  return std::max<std::size_t>(1, (cells + side - 1) / side);
-}
+int cellsPerPixel(int cells, int max_side) { return std::max(1, (cells + max_side - 1) / max_side); }
 
 /** An empty picture over a rectangle (m). */
 MapPicture emptyPicture(double x_min, double x_max, double y_min, double y_max, double m_per_px) {
@@ -107,27 +87,20 @@ std::string png(const MapPicture& picture) {
 
 }  // namespace
 
-MapPicture mapPicture(const EvidenceGrid& map, int max_side) {
-  const CellRange range = observedRange(map);
-  if (range.x_first > range.x_last) return emptyPicture(0, 1, 0, 1, 1);
+MapPicture mapPicture(const PackedEvidence& map, int max_side) {
+  const CellRange range = map.observedRange();
+  if (range.empty()) return emptyPicture(0, 1, 0, 1, 1);
   const Shades shades;
-  const std::size_t nx = range.x_last - range.x_first + 1, ny = range.y_last - range.y_first + 1;
-  const std::size_t block = cellsPerPixel(std::max(nx, ny), max_side);
-  const double r = map.resolution(), m_per_px = static_cast<double>(block) * r;
-  const double x_min = map.log_odds.getXMin() + static_cast<double>(range.x_first) * r;
-  const double y_min = map.log_odds.getYMin() + static_cast<double>(range.y_first) * r;
-  MapPicture picture = emptyPicture(x_min, x_min + static_cast<double>(nx) * r, y_min,
-                                    y_min + static_cast<double>(ny) * r, m_per_px);
-  const float *log_odds = map.log_odds.data().data(), *hits = map.hits.data().data();
-  for (std::size_t y = 0; y < ny; ++y) {
-    const std::size_t first = (range.y_first + y) * map.sizeX() + range.x_first;
-    const std::size_t row = static_cast<std::size_t>(picture.height) - 1 - y / block;
-    for (std::size_t x = 0; x < nx; ++x) {
-      if (!(hits[first + x] > 0)) continue;
-      uint8_t& shade = picture.shades[row * static_cast<std::size_t>(picture.width) + x / block];
-      shade = std::max(shade, shades.of(static_cast<double>(log_odds[first + x])));
-    }
-  }
+  const int block = cellsPerPixel(std::max(range.columns(), range.rows()), max_side);
+  const double r = map.resolution(), x_min = map.xMin() + range.x_first * r,
+               y_min = map.yMin() + range.y_first * r;
+  MapPicture picture =
+      emptyPicture(x_min, x_min + range.columns() * r, y_min, y_min + range.rows() * r, block * r);
+  map.forEachObserved([&](int cx, int cy, float log_odds, float) {
+    const int column = (cx - range.x_first) / block, row = picture.height - 1 - (cy - range.y_first) / block;
+    uint8_t& shade = picture.shades[static_cast<std::size_t>(row * picture.width + column)];
+    shade = std::max(shade, shades.of(static_cast<double>(log_odds)));
+  });
   return picture;
 }
 
@@ -140,8 +113,8 @@ MapPicture mapPicture(const mrpt::maps::COccupancyGridMap2D& map, const TPose2D&
     high = {std::max(high.x, corner.x), std::max(high.y, corner.y)};
   }
   const double r = static_cast<double>(map.getResolution());
-  const auto cells = static_cast<std::size_t>(std::max(high.x - low.x, high.y - low.y) / r);
-  const double m_per_px = r * static_cast<double>(cellsPerPixel(cells, max_side));
+  const int cells = static_cast<int>(std::max(high.x - low.x, high.y - low.y) / r);
+  const double m_per_px = r * cellsPerPixel(cells, max_side);
   MapPicture picture = emptyPicture(low.x, high.x, low.y, high.y, m_per_px);
   constexpr double kCellsPerUnit = 16;  // MRPT's cells: log-odds of free space in sixteenths
   auto* shade = picture.shades.data();

@@ -37,7 +37,7 @@ JoinedMap withEdits(JoinedMap from, const std::vector<Constraint>& by_hand) {
       std::remove_if(constraints.begin(), constraints.end(), [](const Constraint& c) { return c.by_hand; }),
       constraints.end());
   constraints.insert(constraints.end(), by_hand.begin(), by_hand.end());
-  from.map = EvidenceGrid();
+  from.map = PackedEvidence();
   return from;
 }
 

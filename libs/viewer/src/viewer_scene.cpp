@@ -264,17 +264,16 @@ void ViewerScene::updateLandmarks(const ViewerModel& model) {
 }
 
 void ViewerScene::updateMap(const ViewerModel& model) {
-  const EvidenceGrid& map = model.joined().map;
-  const bool same = map.cells() == map_cells_ && model.joined().objective == map_objective_;
+  const PackedEvidence& map = model.joined().map;
+  const bool same = map.storedCells() == map_cells_ && model.joined().objective == map_objective_;
   if (!same || !model.shows(Layer::kMap)) map_->clear();
   map_cells_ = 0;
   if (!model.shows(Layer::kMap)) return;
-  map_cells_ = map.cells();
+  map_cells_ = map.storedCells();
   map_objective_ = model.joined().objective;
   if (same && !map_->empty()) return;
-  const PackedEvidence packed(map);
-  if (packed.empty()) return;
-  auto plane = gridPicture(packed, kMap);
+  if (map.empty()) return;
+  auto plane = gridPicture(map, kMap);
   plane->setLocation(0, 0, kMapHeight + 0.1);
   map_->insert(plane);
 }

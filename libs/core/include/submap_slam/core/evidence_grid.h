@@ -1,7 +1,6 @@
 #pragma once
 
 #include <mrpt/containers/CDynamicGrid.h>
-#include <mrpt/maps/COccupancyGridMap2D.h>
 #include <mrpt/serialization/CArchive.h>
 
 #include <utility>
@@ -55,20 +54,13 @@ struct EvidenceGrid {
    * none. */
   EvidenceGrid cropped() const;
 
-  /** True if cropped() would change nothing. */
-  bool isCropped() const;
-
-  /** MRPT's grid: the evidence sum clamped to MRPT's int8 range; unknown
-   * cells are 0.5. Its probabilities are those of *free* space, as in MRPT. */
-  mrpt::maps::COccupancyGridMap2D toOccupancyGrid() const;
-
-  /** Probability that the cell is occupied, in (0, 1); 0.5 if unknown. */
-  double occupancy(std::size_t cx, std::size_t cy) const;
-
   void writeTo(mrpt::serialization::CArchive& out) const;
 
   /** Throws std::runtime_error if sizes are implausible or do not match. */
   static EvidenceGrid readFrom(mrpt::serialization::CArchive& in);
 };
+
+/** Probability that a cell is occupied, in (0, 1). */
+double occupancyOf(float log_odds);
 
 }  // namespace submap_slam

@@ -3,9 +3,9 @@
 #include <mrpt/core/Clock.h>
 #include <mrpt/math/TPose2D.h>
 #include <mrpt/poses/CPosePDFGaussian.h>
-#include <submap_slam/core/evidence_grid.h>
 #include <submap_slam/core/frame.h>
 #include <submap_slam/core/grid_submap.h>
+#include <submap_slam/core/packed_evidence.h>
 
 #include <string>
 #include <vector>
@@ -60,7 +60,7 @@ struct JoinedMap {
    * where the submaps have them. */
   std::vector<std::vector<mrpt::math::TPose2D>> nodes;
 
-  EvidenceGrid map;  ///< global evidence in the global map frame
+  PackedEvidence map;  ///< global evidence in the global map frame
   double objective = 0;
   std::vector<JoinIteration> iterations;
   std::vector<Constraint> constraints;
@@ -88,7 +88,7 @@ Trajectory odometryOf(const std::vector<Frame>& frames);
  * Cells that no submap observed stay unknown.
  * @param resolution metres per cell of the result; ≤ 0: that of the finest submap, doubled until the
  * map has at most 20 million cells */
-EvidenceGrid fuseEvidence(const GridSubmaps& submaps,
-                          const std::vector<mrpt::poses::CPosePDFGaussian>& frames, double resolution);
+PackedEvidence fuseEvidence(const GridSubmaps& submaps,
+                            const std::vector<mrpt::poses::CPosePDFGaussian>& frames, double resolution);
 
 }  // namespace submap_slam

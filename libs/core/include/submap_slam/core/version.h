@@ -7,6 +7,6 @@ const char* version();
 
 /** Interface that joiner plugins are built against; a plugin with another number is refused when it is
  * loaded. */
-constexpr int kPluginInterfaceVersion = 5;
+constexpr int kPluginInterfaceVersion = 6;
 
 }  // namespace submap_slam

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <mrpt/poses/CPosePDFGaussian.h>
-#include <submap_slam/core/evidence_grid.h>
 #include <submap_slam/core/joined_map.h>
+#include <submap_slam/core/packed_evidence.h>
 
 #include <string>
 #include <vector>
@@ -17,7 +17,7 @@ namespace submap_slam {
  * several cells share a pixel and the most occupied one is shown. Trajectory and frames may be empty. Throws
  * OutputError.
  * @param max_side longest allowed side of the picture in pixels, at least 200 */
-void writeMapImage(const std::string& file, const EvidenceGrid& map, const Trajectory& trajectory,
+void writeMapImage(const std::string& file, const PackedEvidence& map, const Trajectory& trajectory,
                    const std::vector<mrpt::poses::CPosePDFGaussian>& frames, int max_side = 4000);
 
 }  // namespace submap_slam

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <submap_slam/core/evidence_grid.h>
+#include <submap_slam/core/packed_evidence.h>
 
 #include <string>
 
@@ -11,6 +11,6 @@ namespace submap_slam {
  *
  * Binary PGM, one pixel per cell, top row = largest y: 0 occupied (p > 0.65), 254 free (p < 0.196), 205
  * otherwise. `origin` is the lower-left corner of the grid (m). Throws OutputError. */
-void writeRosMap(const std::string& yaml_file, const EvidenceGrid& map);
+void writeRosMap(const std::string& yaml_file, const PackedEvidence& map);
 
 }  // namespace submap_slam

@@ -14,7 +14,7 @@
 namespace submap_slam {
 
 /** Makes the global map of joined submaps. */
-using MapMaker = std::function<EvidenceGrid(const GridSubmaps&, const JoinedMap&)>;
+using MapMaker = std::function<PackedEvidence(const GridSubmaps&, const JoinedMap&)>;
 
 /** The one that [joining] map and map_resolution ask for; keeps a copy of what it needs. */
 MapMaker mapMaker(const Configuration& config);

@@ -2,7 +2,7 @@
 
 #include <mrpt/maps/COccupancyGridMap2D.h>
 #include <mrpt/math/TPose2D.h>
-#include <submap_slam/core/evidence_grid.h>
+#include <submap_slam/core/packed_evidence.h>
 
 #include <cstdint>
 #include <string>
@@ -25,7 +25,7 @@ struct MapPicture {
 
 /** The observed part of a map. Where it is too large for `max_side` pixels several cells share a pixel, and
  * the most occupied one is shown. */
-MapPicture mapPicture(const EvidenceGrid& map, int max_side);
+MapPicture mapPicture(const PackedEvidence& map, int max_side);
 
 /** A map turned and moved into another frame, each pixel the cell under its centre; cells of probability ½
  * count as unknown.
