@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kBlock = EvidenceLevel::kBlock, kBlockMask = kBlock - 1,
               kBlockShift = EvidenceLevel::kBlockShift;
-constexpr int kStride = EvidenceLevel::kStride;
+constexpr int kStride = EvidenceLevel::kStride, kStored = EvidenceLevel::kStored;
 
 #define SUBMAP_SLAM_INLINE [[gnu::always_inline]] inline
 
@@ -21,8 +21,8 @@ struct Loops {
   static constexpr std::size_t kWidth = bytes / sizeof(Scalar);
   using Vector [[gnu::vector_size(bytes), gnu::may_alias]] = Scalar;
   using Integers [[gnu::vector_size(kWidth * sizeof(int32_t)), gnu::may_alias]] = int32_t;
-  using Four [[gnu::vector_size(16), gnu::may_alias, gnu::aligned(8)]] =
-      float;  // two cells next to each other
+  using Four [[gnu::vector_size(16), gnu::may_alias]] = float;
+  using Two [[gnu::vector_size(8), gnu::may_alias, gnu::aligned(4)]] = float;  // cells next to each other
   using FourScalars [[gnu::vector_size(4 * sizeof(Scalar)), gnu::may_alias]] = Scalar;
 
   static const Vector& at(const Row<Scalar>& row, std::size_t k) {
@@ -54,19 +54,21 @@ struct Loops {
       reinterpret_cast<Integers&>(block[k]) = point.block;
       reinterpret_cast<Integers&>(bit[k]) = (point.row & kBlockMask) * kBlock + (point.column & kBlockMask);
     }
-    const uint64_t* const surfaces = view.table.surfaces;
     for (std::size_t k = 0; k < kTilePoints; ++k)
-      marked[k] |= static_cast<uint8_t>(surfaces[block[k]] >> bit[k] & 1);
+      marked[k] |=
+          static_cast<uint8_t>(view.table.blocks[view.table.numbers[block[k]]].surface >> bit[k] & 1);
   }
 
-  SUBMAP_SLAM_INLINE static Four two(const EvidenceCell* cells) {
-    return *reinterpret_cast<const Four*>(cells);
-  }
-
-  /** Values of the four cells around points: L and N of cells (0, 0), (1, 0), (0, 1) and (1, 1). */
+  /** Values of the four cells around points, (0, 0), (1, 0), (0, 1) and (1, 1): L, then N. */
   using Corners = std::array<Row<float>, 8>;
 
-  /** Writes cells (0, 0), (1, 0) of four points, or (0, 1), (1, 1), to four rows of L, N, L and N. */
+  /** Those of one point. */
+  SUBMAP_SLAM_INLINE static Four cornersAt(const float* cell) {
+    const Two low = *reinterpret_cast<const Two*>(cell), high = *reinterpret_cast<const Two*>(cell + kStride);
+    return __builtin_shufflevector(low, high, 0, 1, 2, 3);
+  }
+
+  /** Writes those of four points, of L or of N, to four rows. */
   SUBMAP_SLAM_INLINE static void transpose(const Four& p, const Four& q, const Four& r, const Four& s,
                                            Corners& corners, std::size_t first, std::size_t point) {
     const Four pq_low = __builtin_shufflevector(p, q, 0, 4, 1, 5);
@@ -83,12 +85,12 @@ struct Loops {
   }
 
   using Floats [[gnu::vector_size(kWidth * sizeof(float)), gnu::may_alias]] = float;
-  SUBMAP_SLAM_INLINE static void interpolate(const Corners& corners, std::size_t field, std::size_t point,
+  SUBMAP_SLAM_INLINE static void interpolate(const Corners& corners, std::size_t first, std::size_t point,
                                              const Vector& fu, const Vector& fv, Vector& value, Vector& du,
                                              Vector& dv) {
     Vector c[4];  // std::array would lose that they are vectors
     for (std::size_t k = 0; k < 4; ++k) {
-      const Floats& corner = reinterpret_cast<const Floats&>(corners[2 * k + field][point]);
+      const Floats& corner = reinterpret_cast<const Floats&>(corners[first + k][point]);
       if constexpr (std::is_same_v<Scalar, float>)
         c[k] = corner;  // GCC would convert one by one
       else
@@ -120,22 +122,24 @@ struct Loops {
       at(m.x, k) = view.x0 + point.u;
       at(m.y, k) = view.y0 + point.v;
     }
-    const int32_t* const origins = view.table.origins;
-    const EvidenceCell* const cells = view.table.cells;
+    const EvidenceBlockTable& table = view.table;
+    const auto number = [&](std::size_t k) { return table.numbers[block[k]]; };
+    const auto log_odds = [&](std::size_t k) {
+      return cornersAt(table.log_odds + (table.blocks[number(k)].log_odds + within[k]));
+    };
+    const auto hits = [&](std::size_t k) {
+      return cornersAt(table.hits + (kStored * number(k) + within[k]));
+    };
     for (std::size_t k = 0; k < points.count; k += 4) {
-      const EvidenceCell *const p = cells + (origins[block[k]] + within[k]),
-                                *const q = cells + (origins[block[k + 1]] + within[k + 1]),
-                                *const r = cells + (origins[block[k + 2]] + within[k + 2]),
-                                *const s = cells + (origins[block[k + 3]] + within[k + 3]);
-      transpose(two(p), two(q), two(r), two(s), corners, 0, k);
-      transpose(two(p + kStride), two(q + kStride), two(r + kStride), two(s + kStride), corners, 4, k);
+      transpose(log_odds(k), log_odds(k + 1), log_odds(k + 2), log_odds(k + 3), corners, 0, k);
+      transpose(hits(k), hits(k + 1), hits(k + 2), hits(k + 3), corners, 4, k);
     }
     for (Row<float>& row : corners)
       for (std::size_t k = points.count; k < padded; ++k) row[k] = 0;
     for (std::size_t k = 0; k < padded; k += kWidth) {
       interpolate(corners, 0, k, at(fu, k), at(fv, k), at(m.log_odds, k), at(m.log_odds_u, k),
                   at(m.log_odds_v, k));
-      interpolate(corners, 1, k, at(fu, k), at(fv, k), at(m.hits, k), at(m.hits_u, k), at(m.hits_v, k));
+      interpolate(corners, 4, k, at(fu, k), at(fv, k), at(m.hits, k), at(m.hits_u, k), at(m.hits_v, k));
     }
   }
 

@@ -21,6 +21,15 @@ float aboveBackground(float log_odds, float hits, double background) {
   return std::abs(excess) <= kRounding * std::abs(expected) ? 0.0f : static_cast<float>(excess);
 }
 
+/** Values of a stored block at a cell and its neighbours, in the order (0, 0), (1, 0), (0, 1), (1, 1). */
+std::array<double, 4> cornersOf(const float* block, int column, int row) {
+  constexpr int kMask = EvidenceLevel::kBlock - 1;
+  const float* low = block + (row & kMask) * EvidenceLevel::kStride + (column & kMask);
+  const float* high = low + EvidenceLevel::kStride;
+  return {static_cast<double>(low[0]), static_cast<double>(low[1]), static_cast<double>(high[0]),
+          static_cast<double>(high[1])};
+}
+
 /** Bilinear value and gradient per cell of the four corners of a cell, in the order (0, 0), (1, 0), (0, 1),
  * (1, 1). */
 void interpolate(const std::array<double, 4>& corner, double a, double b, double scale, double& value,
@@ -87,18 +96,21 @@ EvidenceLevel::EvidenceLevel(const EvidenceRaster& raster)
   const int columns = (raster.columns + kBlock - 1) / kBlock, rows = (raster.rows + kBlock - 1) / kBlock;
   table_columns_ = static_cast<std::size_t>(columns + 2 * kMargin);
   table_rows_ = static_cast<std::size_t>(rows + 2 * kMargin);
-  origins_.assign(table_columns_ * table_rows_, 0);
-  surfaces_.assign(table_columns_ * table_rows_, 0);
-  cells_.resize(kStride * kStride);
+  numbers_.assign(table_columns_ * table_rows_, 0);
+  stored_.resize(1);
+  hits_.resize(kStored);
+  log_odds_.resize(kStored);
   for (int r = 0; r < rows; ++r)
     for (int c = 0; c < columns; ++c) addBlock(raster, c, r);
   blocks_.shrink_to_fit();
-  cells_.shrink_to_fit();
+  stored_.shrink_to_fit();
+  hits_.shrink_to_fit();
+  log_odds_.shrink_to_fit();
 }
 
 void EvidenceLevel::addBlock(const EvidenceRaster& raster, int block_column, int block_row) {
   const Block corner{block_column * kBlock, block_row * kBlock, 0};
-  std::array<EvidenceCell, kStride * kStride> cells{};
+  std::array<EvidenceCell, kStored> cells{};
   const int columns = std::min(kStride, raster.columns - corner.column);
   const int rows = std::min(kStride, raster.rows - corner.row);
   for (int r = 0; r < rows; ++r)
@@ -113,16 +125,18 @@ void EvidenceLevel::addBlock(const EvidenceRaster& raster, int block_column, int
     for (int c = 0; c < kBlock; ++c)
       if (above(c, r) || above(c + 1, r) || above(c, r + 1) || above(c + 1, r + 1))
         block.surface |= uint64_t{1} << (r * kBlock + c);
-  const std::size_t index = tableIndex(corner.column, corner.row);
-  origins_[index] = static_cast<int32_t>(cells_.size());
-  surfaces_[index] = block.surface;
+  numbers_[tableIndex(corner.column, corner.row)] = static_cast<int32_t>(stored_.size());
   blocks_.push_back(block);
-  cells_.insert(cells_.end(), cells.begin(), cells.end());
+  stored_.push_back({block.surface, block.surface != 0 ? log_odds_.size() : 0});
+  for (const EvidenceCell& cell : cells) {
+    hits_.push_back(cell.hits);
+    if (block.surface != 0) log_odds_.push_back(cell.log_odds);
+  }
 }
 
 EvidenceBlockTable EvidenceLevel::tableAt(int column, int row) const {
   const std::size_t index = tableIndex(column, row);
-  return {&origins_[index], &surfaces_[index], static_cast<int>(table_columns_), cells_.data()};
+  return {&numbers_[index], static_cast<int>(table_columns_), stored_.data(), hits_.data(), log_odds_.data()};
 }
 
 bool EvidenceLevel::tableHolds(double column, double row) const {
@@ -137,18 +151,25 @@ EvidenceSample EvidenceLevel::sample(double column, double row) const {
   if (!tableHolds(column, row)) return s;
   const double c = std::floor(column), r = std::floor(row);
   const int ci = static_cast<int>(c), ri = static_cast<int>(r);
-  const EvidenceBlockTable table = tableAt(ci, ri);
-  const EvidenceCell* low =
-      table.cells + *table.origins + (ri & (kBlock - 1)) * kStride + (ci & (kBlock - 1));
-  const EvidenceCell* high = low + kStride;
-  const auto corners = [&](float EvidenceCell::*value) {
-    return std::array<double, 4>{static_cast<double>(low[0].*value), static_cast<double>(low[1].*value),
-                                 static_cast<double>(high[0].*value), static_cast<double>(high[1].*value)};
-  };
+  const auto number = static_cast<std::size_t>(numbers_[tableIndex(ci, ri)]);
   const double scale = 1 / resolution_;
-  interpolate(corners(&EvidenceCell::log_odds), column - c, row - r, scale, s.log_odds, s.log_odds_gradient);
-  interpolate(corners(&EvidenceCell::hits), column - c, row - r, scale, s.hits, s.hits_gradient);
+  interpolate(cornersOf(&log_odds_[stored_[number].log_odds], ci, ri), column - c, row - r, scale, s.log_odds,
+              s.log_odds_gradient);
+  interpolate(cornersOf(&hits_[number * kStored], ci, ri), column - c, row - r, scale, s.hits,
+              s.hits_gradient);
   return s;
+}
+
+double EvidenceLevel::hitsAt(double column, double row) const {
+  if (!tableHolds(column, row)) return 0;
+  const double c = std::floor(column), r = std::floor(row);
+  const int ci = static_cast<int>(c), ri = static_cast<int>(r);
+  const auto number = static_cast<std::size_t>(numbers_[tableIndex(ci, ri)]);
+  if (number == 0) return 0;
+  double hits = 0;
+  std::array<double, 2> gradient{};
+  interpolate(cornersOf(&hits_[number * kStored], ci, ri), column - c, row - r, 1, hits, gradient);
+  return hits;
 }
 
 double backgroundOf(const GridSubmaps& submaps) {

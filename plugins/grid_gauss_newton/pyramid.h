@@ -9,7 +9,7 @@
 
 namespace submap_slam::grid_joining {
 
-/** Evidence of one cell, both values next to each other because every look-up needs both. */
+/** Evidence of one cell. */
 struct EvidenceCell {
   float log_odds = 0;  ///< sum of log-odds above the background, positive = occupied
   float hits = 0;      ///< number of observations; 0: unknown
@@ -53,25 +53,32 @@ struct EvidenceRaster {
   }
 };
 
+/** What an EvidenceLevel stores of a block besides its hits. */
+struct StoredBlock {
+  uint64_t surface = 0;      ///< EvidenceLevel::Block::surface
+  std::size_t log_odds = 0;  ///< index of its first log-odds; 0, of zeros, if it shows no surface
+};
+
 /** Blocks of an EvidenceLevel around some block: the one `right` and `up` of it is entry right + stride · up.
- */
+ * Hits and log-odds of a block are kStride × kStride values, row by row. */
 struct EvidenceBlockTable {
-  const int32_t* origins;    ///< index of the block's first cell; 0, of unknown cells, where none is stored
-  const uint64_t* surfaces;  ///< EvidenceLevel::Block::surface, 0 where none is stored
+  const int32_t* numbers;  ///< of the blocks; 0, one of unknown cells, where none is stored
   int stride;
-  const EvidenceCell* cells;  ///< kStride × kStride cells of a block, row by row
+  const StoredBlock* blocks;  ///< by their numbers
+  const float* hits;          ///< of all blocks by their numbers
+  const float* log_odds;
 };
 
 /** The evidence of one submap at one resolution. Only blocks of 8 × 8 cells with something observed are
- * stored: a submap fills a tenth of its bounding box. Index coordinates (cell centres are integers) count
- * from the raster's cell (0, 0); everything outside the raster is unknown, so the interpolated fields are
- * continuous everywhere. */
+ * stored, and log-odds only of those that show a surface: a submap fills a tenth of its bounding box, and
+ * most of that is free space. Index coordinates (cell centres are integers) count from the raster's cell
+ * (0, 0); everything outside the raster is unknown, so the interpolated fields are continuous everywhere. */
 class EvidenceLevel {
  public:
   static constexpr int kBlockShift = 3, kBlock = 1 << kBlockShift;
 
   /** A block is stored with the first row and column of the next ones: every look-up needs one block only. */
-  static constexpr int kStride = kBlock + 1;
+  static constexpr int kStride = kBlock + 1, kStored = kStride * kStride;
 
   /** Blocks around the raster that may be looked up without asking. */
   static constexpr int kMargin = 5;
@@ -91,6 +98,7 @@ class EvidenceLevel {
 
   /** Bilinear interpolation anywhere. */
   EvidenceSample sample(double column, double row) const;
+  double hitsAt(double column, double row) const;  ///< EvidenceSample::hits
 
   /** A stored block: look-ups (c + a, r + b), 0 ≤ a, b < 1, with (c, r) in it may see something. */
   struct Block {
@@ -113,10 +121,10 @@ class EvidenceLevel {
 
   double x0_ = 0, y0_ = 0, resolution_ = 1;
   std::size_t table_columns_ = 0, table_rows_ = 0;
-  std::vector<int32_t> origins_;    // row by row
-  std::vector<uint64_t> surfaces_;  // row by row
+  std::vector<int32_t> numbers_;  // row by row
   std::vector<Block> blocks_;
-  std::vector<EvidenceCell> cells_;  // block by block, the first one unknown
+  std::vector<StoredBlock> stored_;     // by number, the first one unknown
+  std::vector<float> hits_, log_odds_;  // block by block, the first one unknown
 };
 
 /** All submaps at one resolution, in the order of the submaps. */

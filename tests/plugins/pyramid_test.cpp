@@ -78,12 +78,15 @@ TEST(EvidenceLevel, InterpolatesBilinearlyWithItsGradient) {
   EXPECT_NEAR(s.hits_gradient[1], 4 / 0.1, 1e-9);
 }
 
-/** Over the borders of blocks, next to unknown blocks and far outside. */
+/** Over the borders of blocks, next to unknown blocks, in free space and far outside. */
 TEST(EvidenceLevel, IsTheRasterEverywhere) {
   EvidenceGrid grid = testing::roughSubmap(5, 4.3, 3.1, 0.1)->evidence;
-  for (unsigned cy = 0; cy < grid.sizeY(); ++cy)  // a gap of several blocks
-    for (unsigned cx = 7; cx < 31; ++cx)
+  for (unsigned cy = 0; cy < grid.sizeY(); ++cy) {
+    for (unsigned cx = 7; cx < 23; ++cx)  // a gap of several blocks
       *grid.log_odds.cellByIndex(cx, cy) = *grid.hits.cellByIndex(cx, cy) = 0;
+    for (unsigned cx = 23; cx < 34; ++cx)  // and no surfaces beside it
+      *grid.log_odds.cellByIndex(cx, cy) = 0;
+  }
   const EvidenceRaster raster = rasterOf(grid);
   const EvidenceLevel level(raster);
   EXPECT_LT(level.blocks().size(), 5u * 6u) << "blocks of the gap are not stored";
@@ -103,7 +106,8 @@ TEST(EvidenceLevel, SurfaceBitsSayWhereALookUpSeesMoreThanBackground) {
   // The raster's cell (8, 3) is above the background: look-ups from four cells reach it.
   for (int r = 0; r < 6; ++r)
     for (int c = 0; c < 16; ++c) {
-      const bool bit = *level.tableAt(c, r).surfaces >> (8 * (r % 8) + c % 8) & 1;
+      const EvidenceBlockTable table = level.tableAt(c, r);
+      const bool bit = table.blocks[*table.numbers].surface >> (8 * (r % 8) + c % 8) & 1;
       EXPECT_EQ(bit, (c == 7 || c == 8) && (r == 2 || r == 3)) << c << " " << r;
     }
 }
