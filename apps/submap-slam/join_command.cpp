@@ -9,6 +9,7 @@
 
 #include "commands.h"
 #include "summary.h"
+#include "symbol_tables.h"
 #include "terminal_reporter.h"
 
 namespace submap_slam {
@@ -43,6 +44,7 @@ RunSummary joinLandmarks(const JoinOptions& options, const Configuration& config
 
 int runJoin(const JoinOptions& options) {
   const auto config = loadConfiguration(options.run.configuration);
+  giveBackSymbolTables();
   const bool landmarks = holdsLandmarkSubmaps(options.submap_file);
   if (options.unknown_association && !landmarks)
     throw InputError(

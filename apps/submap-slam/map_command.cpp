@@ -7,6 +7,7 @@
 #include <submap_slam/pipeline/landmark_pipeline.h>
 #include "commands.h"
 #include "summary.h"
+#include "symbol_tables.h"
 #include "terminal_reporter.h"
 #include "viewer_process.h"
 
@@ -23,6 +24,7 @@ struct MapOptions {
 int runMap(MapOptions& options) {
   const std::string log = takeLog(options.files, options.run.configuration);
   const auto config = loadConfiguration(options.run.configuration);
+  giveBackSymbolTables();
   const Edits edits = options.edits_file.empty() ? Edits{} : readEdits(options.edits_file);
   const auto limit = limitThreads(options.run.threads);
   TerminalReporter reporter(options.run.quiet);

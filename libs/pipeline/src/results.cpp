@@ -1,6 +1,7 @@
 #include <submap_slam/pipeline/results.h>
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <submap_slam/output/graph_file.h>
 #include <submap_slam/output/map_image.h>
 #include <submap_slam/output/mrpt_files.h>
@@ -29,6 +30,7 @@ void writeMapSoFar(const OutputDirectory& out, const GridSubmaps& submaps, const
 
 void writeResults(const OutputDirectory& out, const GridSubmaps& submaps, const JoinedMap& joined) {
   writeSimpleMap(out.file("map.simplemap"), submaps, joined);  // the last one that reads submaps
+  malloc_trim(0);                                              // it had all scans in memory
   writeMapSoFar(out, submaps, joined);
   writeRosMap(out.file("map.yaml"), joined.map);
   writeGridMap(out.file("map.gridmap.gz"), joined.map);

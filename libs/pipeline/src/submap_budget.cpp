@@ -1,8 +1,10 @@
 #include <submap_slam/pipeline/submap_budget.h>
 
 #include <malloc.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
 
 namespace submap_slam {
 namespace {
@@ -12,13 +14,25 @@ double heapInUse_bytes() {
   return static_cast<double>(heap.uordblks) + static_cast<double>(heap.hblkhd);
 }
 
+/** Of the whole program; 0 if the system does not tell. */
+double resident_bytes() {
+  std::ifstream statm("/proc/self/statm");
+  double size = 0, resident = 0;
+  statm >> size >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
 }  // namespace
 
 SubmapStore::Budget submapBudget(double memory_MB) {
   constexpr unsigned kAskedRarely = 8;  // glibc walks over all its free chunks to answer
-  return [memory_MB, calls = 0u, others = 0.0](std::size_t kept_bytes) mutable {
-    if (calls++ % kAskedRarely == 0) others = heapInUse_bytes() - static_cast<double>(kept_bytes);
-    return static_cast<std::size_t>(std::max(0.0, 1e6 * (memory_MB - kLeastMemory_MB) - others));
+  constexpr double kNearlyAll = 0.9;
+  return [memory = 1e6 * memory_MB, calls = 0u, others = 0.0](std::size_t kept_bytes) mutable {
+    if (calls++ % kAskedRarely == 0) {
+      if (resident_bytes() > kNearlyAll * memory) malloc_trim(0);  // submaps leave holes in the heap
+      others = heapInUse_bytes() - static_cast<double>(kept_bytes);
+    }
+    return static_cast<std::size_t>(std::max(0.0, memory - 1e6 * kLeastMemory_MB - others));
   };
 }
 

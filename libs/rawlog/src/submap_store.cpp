@@ -93,10 +93,10 @@ void SubmapStore::spill(const Entry& entry) {
 }
 
 SubmapStore::BulkPtr SubmapStore::readAgain(const Entry& entry) const {
-  std::vector<char> bytes(entry.spilled_bytes);
-  spill_->read(entry.spilled_at, bytes.data(), bytes.size());
+  const std::unique_ptr<char[]> bytes(new char[entry.spilled_bytes]);  // a vector would clear it first
+  spill_->read(entry.spilled_at, bytes.get(), entry.spilled_bytes);
   mrpt::io::CMemoryStream stream;
-  stream.assignMemoryNotOwn(bytes.data(), bytes.size());
+  stream.assignMemoryNotOwn(bytes.get(), entry.spilled_bytes);
   return std::make_shared<const SubmapBulk>(readBulk(mrpt::serialization::archiveFrom(stream)));
 }
 
