@@ -17,7 +17,7 @@ Feature feature(uint32_t id, double x, double y, double variance, uint32_t hits 
 }
 
 MixtureComponent component(double weight, const Pose& pose, const std::vector<Feature>& features) {
-  return {weight, pose, Eigen::Matrix3d::Zero(), features};
+  return {weight, pose, Eigen::Matrix3d::Zero(), features, {}};
 }
 
 LandmarkEstimate gaussianOf(const std::vector<MixtureComponent>& components, bool corrected = false,
@@ -40,6 +40,20 @@ TEST(ToGaussian, HasTheMomentsOfAHandWorkedMixture) {
   EXPECT_NEAR(estimate.covariance(0, 3), 3, 1e-12);
   EXPECT_NEAR(estimate.covariance(1, 1), 0.01, 1e-12);
   EXPECT_NEAR(estimate.covariance(4, 4), 0.3, 1e-12);
+}
+
+TEST(ToGaussian, TakesOverWhatPoseAndFeaturesHaveInCommon) {
+  // Of the features that the second lacks the rows go.
+  auto first = component(0.5, {0, 0, 0}, {feature(1, 5, 0, 1), feature(2, 9, 0, 1)});
+  first.covariance = Eigen::MatrixXd::Identity(7, 7);
+  first.covariance(0, 5) = first.covariance(5, 0) = 0.4;
+  auto second = component(0.5, {0, 0, 0}, {feature(2, 9, 0, 1)});
+  second.covariance = 3 * Eigen::MatrixXd::Identity(5, 5);
+  const auto estimate = gaussianOf({first, second});
+  ASSERT_EQ(estimate.features.size(), 1u);
+  EXPECT_NEAR(estimate.covariance(0, 0), 2, 1e-12);
+  EXPECT_NEAR(estimate.covariance(0, 3), 0.2, 1e-12);
+  EXPECT_NEAR(estimate.covariance(0, 4), 0, 1e-12);
 }
 
 TEST(ToGaussian, CorrectsTheSpreadOfFewSamples) {

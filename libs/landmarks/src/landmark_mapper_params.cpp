@@ -47,6 +47,11 @@ void describe(ParameterTable& table, LandmarkParticleParams& p) {
   table.add(
       "evidence_missed", p.missed, "", kNonNegative,
       "Log-odds that a feature loses where the sensor looks at it and does not see it; below 0 it goes");
+  table.add(
+      "gaussian", p.gaussian,
+      "How the submap is made of the particles: from their associations, with the path of each smoothed "
+      "by least squares, or from their paths, as many as there are particles",
+      {"smoothed", "particles"});
 }
 
 void describe(ParameterTable& table, LandmarkClosingParams& p) {

@@ -72,19 +72,36 @@ void dropRareFeatures(const std::vector<MixtureComponent>& components, double mo
   }
 }
 
-/** x_j, and blkdiag(P_j, Σ_1, …) times the weight added to the covariance. */
-VectorXd stateOf(const MixtureComponent& component, const std::vector<std::size_t>& index, double weight,
-                 double heading, MatrixXd& covariance) {
+/** Rows of the pose and of the features with these indices. */
+std::vector<Index> rowsOf(const std::vector<std::size_t>& index) {
+  std::vector<Index> rows{0, 1, 2};
+  for (const std::size_t i : index)
+    for (const Index axis : {0, 1}) rows.push_back(3 + 2 * static_cast<Index>(i) + axis);
+  return rows;
+}
+
+/** Q_j times the weight is added. */
+void addCovariance(const MixtureComponent& component, const std::vector<std::size_t>& index, double weight,
+                   MatrixXd& sum) {
+  if (component.covariance.size() > 0) {
+    const auto rows = rowsOf(index);
+    sum += weight * component.covariance(rows, rows);
+    return;
+  }
+  sum.topLeftCorner<3, 3>() += weight * component.pose_covariance;
+  for (std::size_t i = 0; i < index.size(); ++i) {
+    const Index row = 3 + 2 * static_cast<Index>(i);
+    sum.block<2, 2>(row, row) += weight * component.features[index[i]].covariance;
+  }
+}
+
+/** x_j, the heading near to another. */
+VectorXd stateOf(const MixtureComponent& component, const std::vector<std::size_t>& index, double heading) {
   VectorXd x(3 + 2 * static_cast<Index>(index.size()));
   x.head<3>() = component.pose;
   x[2] = heading + wrapped(component.pose[2] - heading);
-  covariance.topLeftCorner<3, 3>() += weight * component.pose_covariance;
-  for (std::size_t i = 0; i < index.size(); ++i) {
-    const Index row = 3 + 2 * static_cast<Index>(i);
-    const Feature& feature = component.features[index[i]];
-    x.segment<2>(row) = feature.mean;
-    covariance.block<2, 2>(row, row) += weight * feature.covariance;
-  }
+  for (std::size_t i = 0; i < index.size(); ++i)
+    x.segment<2>(3 + 2 * static_cast<Index>(i)) = component.features[index[i]].mean;
   return x;
 }
 
@@ -113,7 +130,8 @@ LandmarkEstimate toGaussian(const std::vector<MixtureComponent>& components, con
   for (const std::size_t j : kept) {
     const auto column = static_cast<Index>(weights.size());
     weights.push_back(components[j].weight / sum);
-    states.col(column) = stateOf(components[j], c.index[j], weights.back(), heading, covariance);
+    states.col(column) = stateOf(components[j], c.index[j], heading);
+    addCovariance(components[j], c.index[j], weights.back(), covariance);
   }
   const Eigen::Map<const VectorXd> w(weights.data(), static_cast<Index>(weights.size()));
   const VectorXd mean = states * w;  // (7)

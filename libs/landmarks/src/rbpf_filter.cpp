@@ -45,26 +45,28 @@ RbpfFilter::RbpfFilter(const LandmarkMapperParams& params, uint64_t seed)
       improved_proposal_(params.particles.proposal == "fastslam2"),
       random_(seed),
       particles_(static_cast<std::size_t>(params.particles.particles)) {
-  nodes_.push_back({Pose::Zero(), 0});  // the first node of no particle
+  nodes_.push_back({Pose::Zero(), 0, {}});  // the first node of no particle
   for (auto& particle : particles_) {
     particle.log_weight = -std::log(static_cast<double>(particles_.size()));
-    nodes_.push_back({Pose::Zero(), 0});
+    nodes_.push_back({Pose::Zero(), 0, {}});
     particle.path = nodes_.size() - 1;
   }
 }
 
 void RbpfFilter::predict(const MotionStep& step) {
+  if (smooths()) steps_.push_back(step);
   for (auto& particle : particles_) {
     const Composition moved = compose(particle.pose, step.increment);
     particle.pose = moved.pose;
     particle.covariance = moved.by_a * particle.covariance * moved.by_a.transpose() +
                           moved.by_b * step.covariance * moved.by_b.transpose();
-    nodes_.push_back({particle.pose, particle.path});
+    nodes_.push_back({particle.pose, particle.path, {}});
     particle.path = nodes_.size() - 1;
   }
 }
 
 void RbpfFilter::observe(const MeasuredScan& scan) {
+  if (smooths()) scans_.push_back({steps_.size(), scan});
   for (auto& particle : particles_) observe(particle, scan);
   normalise();
   depleted_ = effective() < params_.resample_below * static_cast<double>(particles_.size());
@@ -77,10 +79,12 @@ void RbpfFilter::observe(Particle& particle, const MeasuredScan& scan) {
   const auto origins = associate(particle, scan, places);
   std::vector<Match> matches;
   for (std::size_t m = 0; m < origins.size(); ++m) {
-    if (origins[m].kind == Origin::Kind::kFeature)
+    if (origins[m].kind == Origin::Kind::kFeature) {
       matches.push_back({m, places[origins[m].feature]});
-    else if (!scan.measurements[m].known_id)
+      note(particle, m, particle.features.at(matches.back().place).id);
+    } else if (!scan.measurements[m].known_id) {
       particle.log_weight += unexplained(scan.measurements[m].value.noise, association_.new_gate);
+    }
   }
   if (improved_proposal_) {
     improveProposal(particle, scan, matches);
@@ -91,6 +95,10 @@ void RbpfFilter::observe(Particle& particle, const MeasuredScan& scan) {
   nodes_[particle.path].pose = particle.pose;
   updateFeatures(particle, scan, matches, places);
   addNew(particle, scan, origins);
+}
+
+void RbpfFilter::note(const Particle& particle, std::size_t measurement, uint32_t feature) {
+  if (smooths()) nodes_[particle.path].seen.push_back({scans_.size() - 1, measurement, feature});
 }
 
 /** Features that the scan may see, and those that it names. */
@@ -212,8 +220,7 @@ void RbpfFilter::updateFeatures(Particle& particle, const MeasuredScan& scan,
   particle.features.replace(changes);
 }
 
-void RbpfFilter::addNew(Particle& particle, const MeasuredScan& scan,
-                        const std::vector<Origin>& origins) const {
+void RbpfFilter::addNew(Particle& particle, const MeasuredScan& scan, const std::vector<Origin>& origins) {
   for (std::size_t m = 0; m < origins.size(); ++m) {
     if (origins[m].kind != Origin::Kind::kNew) continue;
     const Measurement& measurement = scan.measurements[m];
@@ -227,6 +234,7 @@ void RbpfFilter::addNew(Particle& particle, const MeasuredScan& scan,
         located.by_measurement * measurement.value.noise * located.by_measurement.transpose();
     feature.evidence = params_.seen;
     particle.features.insert(feature);
+    note(particle, m, feature.id);
   }
 }
 
@@ -257,6 +265,8 @@ void RbpfFilter::resample() {
     while (cumulative < at && source + 1 < particles_.size())
       cumulative += std::exp(particles_[++source].log_weight);
     picked.push_back(particles_[source]);
+    nodes_.push_back(nodes_[picked.back().path]);  // one that its twins do not write to
+    picked.back().path = nodes_.size() - 1;
     picked.back().log_weight = -std::log(count);
   }
   particles_ = std::move(picked);
@@ -282,44 +292,5 @@ Eigen::Matrix3d RbpfFilter::poseCovariance() const {
 }
 
 std::size_t RbpfFilter::features() const { return best().features.size(); }
-
-std::vector<Pose> RbpfFilter::pathOf(const Particle& particle) const {
-  std::vector<Pose> path;
-  for (std::size_t node = particle.path; node != 0; node = nodes_[node].before)
-    path.push_back(nodes_[node].pose);
-  std::reverse(path.begin(), path.end());
-  return path;
-}
-
-std::vector<Pose> RbpfFilter::meanPath(const std::vector<std::size_t>& kept) const {
-  const std::vector<Pose> standard = pathOf(best());
-  std::vector<Pose> sum(standard.size(), Pose::Zero());
-  double weights = 0;
-  for (const std::size_t j : kept) {
-    const std::vector<Pose> path = pathOf(particles_[j]);
-    const double w = std::exp(particles_[j].log_weight);
-    weights += w;
-    for (std::size_t k = 0; k < path.size(); ++k) {
-      const Pose& pose = path[k];
-      sum[k] += w * Pose(pose[0], pose[1], standard[k][2] + wrapped(pose[2] - standard[k][2]));
-    }
-  }
-  for (Pose& pose : sum) pose /= weights;
-  return sum;
-}
-
-LandmarkEstimate RbpfFilter::estimate() const {
-  std::vector<MixtureComponent> components;
-  for (const auto& p : particles_) {
-    components.push_back({std::exp(p.log_weight), p.pose, p.covariance, {}});
-    for (const Place& place : p.features.all()) components.back().features.push_back(p.features.at(place));
-  }
-  std::vector<std::size_t> kept;
-  MixtureOptions options;
-  options.min_hits = association_.min_hits;
-  LandmarkEstimate estimate = toGaussian(components, options, kept);
-  estimate.path = meanPath(kept);
-  return estimate;
-}
 
 }  // namespace submap_slam::landmark_mapping

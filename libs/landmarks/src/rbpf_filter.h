@@ -6,6 +6,7 @@
 #include <submap_slam/landmarks/mixture.h>
 
 #include <random>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,11 @@ namespace submap_slam::landmark_mapping {
  * Between scans a particle holds a Gaussian of the pose; it is sampled when there are measurements: before
  * them (FastSLAM 1), or from its product with their likelihood (FastSLAM 2), so that nothing is lost where
  * nothing is measured. Each particle associates by itself.
+ *
+ * A few dozen particles say well which measurement is of which feature, but not how certain the path is:
+ * drawn anew, they soon have their first poses in common, and nothing that comes later corrects these. For
+ * the estimate particles therefore stand for their associations alone, unless the parameters ask for the
+ * paper's mixture: given the association, path and features are smoothed by least squares.
  */
 class RbpfFilter : public LandmarkFilter {
  public:
@@ -37,9 +43,26 @@ class RbpfFilter : public LandmarkFilter {
     FeatureMap features;
     std::size_t path = 0;  ///< last node
   };
+  /** A measurement, and the feature that it was taken for. */
+  struct Seen {
+    std::size_t scan = 0, measurement = 0;
+    uint32_t feature = 0;
+    bool operator<(const Seen& o) const {
+      return std::tie(scan, measurement, feature) < std::tie(o.scan, o.measurement, o.feature);
+    }
+  };
   struct PathNode {
     Pose pose;
     std::size_t before;
+    std::vector<Seen> seen;
+  };
+  struct RecordedScan {
+    std::size_t step = 0;
+    MeasuredScan scan;
+  };
+  struct Mixture {
+    std::vector<MixtureComponent> components;
+    std::vector<std::vector<Pose>> paths;
   };
   struct Match {
     std::size_t measurement = 0;
@@ -55,12 +78,19 @@ class RbpfFilter : public LandmarkFilter {
   void weigh(Particle& particle, const MeasuredScan& scan, const std::vector<Match>& matches) const;
   void updateFeatures(Particle& particle, const MeasuredScan& scan, const std::vector<Match>& matches,
                       const std::vector<FeatureMap::Place>& places) const;
-  void addNew(Particle& particle, const MeasuredScan& scan, const std::vector<Origin>& origins) const;
+  void addNew(Particle& particle, const MeasuredScan& scan, const std::vector<Origin>& origins);
   void normalise();
   double effective() const;
   void resample();
   std::vector<Pose> pathOf(const Particle& particle) const;
-  std::vector<Pose> meanPath(const std::vector<std::size_t>& kept) const;
+  static std::vector<Feature> featuresOf(const Particle& particle);
+  std::vector<Seen> associationOf(const Particle& particle) const;
+  Mixture mixtureOfParticles() const;
+  Mixture mixtureOfAssociations() const;
+  void addSmoothed(const Particle& particle, const std::vector<Seen>& association, double weight,
+                   Mixture& mixture) const;
+  bool smooths() const { return params_.gaussian == "smoothed"; }
+  void note(const Particle& particle, std::size_t measurement, uint32_t feature);
   const Particle& best() const;
 
   LandmarkAssociationParams association_;
@@ -69,6 +99,8 @@ class RbpfFilter : public LandmarkFilter {
   std::mt19937_64 random_;
   std::vector<Particle> particles_;
   std::vector<PathNode> nodes_;
+  std::vector<MotionStep> steps_;
+  std::vector<RecordedScan> scans_;
   bool depleted_ = false;
 };
 

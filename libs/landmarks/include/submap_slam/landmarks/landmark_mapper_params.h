@@ -35,8 +35,9 @@ struct LandmarkAssociationParams {
 struct LandmarkParticleParams {
   std::string proposal = "fastslam2";
   int particles = 60;
-  double resample_below = 0.5;      ///< share of N_eff
-  double seen = 1.0, missed = 0.5;  ///< evidence for and against a feature, log-odds
+  double resample_below = 0.5;        ///< share of N_eff
+  double seen = 1.0, missed = 0.1;    ///< evidence for and against a feature, log-odds
+  std::string gaussian = "smoothed";  ///< or "particles"
 };
 
 /** When the filter closes a submap before the stretch ends. */

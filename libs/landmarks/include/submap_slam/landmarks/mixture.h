@@ -7,12 +7,16 @@
 
 namespace submap_slam::landmark_mapping {
 
-/** What one particle says: its pose with what is not sampled of it yet, and its features, given the pose. */
+/** What one particle, or all that agree on the association, say of the pose and the features. */
 struct MixtureComponent {
   double weight = 0;  ///< normalised
   Pose pose = Pose::Zero();
   Eigen::Matrix3d pose_covariance = Eigen::Matrix3d::Zero();
   std::vector<Feature> features;
+
+  /** Of (x, y, φ, x_1, y_1, …) in the order of the features; empty: pose and features are independent, as
+   * they are given the path, and have their own covariances. */
+  Eigen::MatrixXd covariance;
 };
 
 struct MixtureOptions {
@@ -29,7 +33,7 @@ struct MixtureOptions {
 
 /** The mixture as one Gaussian with the same moments (Combined SLAM (7), (8)):
  *
- *     x̄ = Σ w_j x_j,   Q = Σ w_j [blkdiag(P_j, Σ_1, …, Σ_n) + (x_j − x̄)(x_j − x̄)ᵀ]
+ *     x̄ = Σ w_j x_j,   Q = Σ w_j [Q_j + (x_j − x̄)(x_j − x̄)ᵀ]
  *
  * Headings are taken about that of the best particle. Features correspond by their ids, the index of the
  * measurement that made them where the log has none; the best particle's set is the standard (9)–(11). The
