@@ -98,12 +98,6 @@ struct PathCircle {
   }
 };
 
-/** What the search keeps of an older submap. */
-struct Known {
-  MatchableSubmap submap;
-  PathCircle path;
-};
-
 /** A match that passed the gates and waits for another one to bear it out. */
 struct Pending {
   Link link;
@@ -135,6 +129,7 @@ class LoopSearch::State {
   void appendFrame(FrameGraph& graph) const;
   void closeLoops(std::size_t k);
   std::vector<Task> tasksOf(std::size_t k, const FrameCovariances& covariances) const;
+  SubmapMatcherParams matcherParams(const std::vector<Task>& tasks) const;
   void attempt(std::size_t k, const SubmapMatcher& matcher, Task& task) const;
   std::string refusal(std::size_t k, const SubmapMatcher& matcher, const Task& task) const;
   std::size_t list(std::size_t k, const Task& task, const Matrix3d& covariance);
@@ -146,8 +141,9 @@ class LoopSearch::State {
   const LoopSearchParams params_;
   GridSubmaps submaps_;
   HandEdits by_hand_;
-  LoopSearchResult result_;   // of the submaps that are known
-  std::vector<Known> known_;  // submaps that were searched
+  LoopSearchResult result_;             // of the submaps that are known
+  std::vector<PathCircle> paths_;       // of those and the one under way
+  std::vector<MatchableSubmap> known_;  // submaps that were searched
   std::vector<Pending> pending_;
 };
 
@@ -185,11 +181,15 @@ void LoopSearch::State::appendFrame(FrameGraph& graph) const {
 }
 
 void LoopSearch::State::closeLoops(std::size_t k) {
-  const SubmapMatcher matcher(*submaps_[k], params_.matcher);
-  known_.push_back({matcher.reference(), PathCircle(*submaps_[k])});
-  if (k == 0) return;
+  paths_.emplace_back(*submaps_[k]);
   const FrameCovariances covariances(result_.graph);
   std::vector<Task> tasks = tasksOf(k, covariances);
+  if (tasks.empty()) {
+    known_.push_back(matchable(*submaps_[k], params_.matcher));
+    return;
+  }
+  const SubmapMatcher matcher(*submaps_[k], matcherParams(tasks));
+  known_.push_back(matcher.reference());
   tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t t) { attempt(k, matcher, tasks[t]); });
   for (const Task& task : tasks) {
     if (!task.match) continue;
@@ -204,6 +204,15 @@ void LoopSearch::State::closeLoops(std::size_t k) {
   if (acceptVerified(k, covariances)) result_.graph.optimise();
 }
 
+/** With the levels that the widest window needs. */
+SubmapMatcherParams LoopSearch::State::matcherParams(const std::vector<Task>& tasks) const {
+  SubmapMatcherParams params = params_.matcher;
+  double widest = 0;
+  for (const Task& task : tasks) widest = std::max(widest, task.window.half_xy);
+  params.pyramid.levels = std::min(params.pyramid.levels, usefulLevels(widest, params.pyramid.resolution));
+  return params;
+}
+
 std::vector<LoopSearch::State::Task> LoopSearch::State::tasksOf(std::size_t k,
                                                                 const FrameCovariances& covariances) const {
   std::vector<Task> tasks;
@@ -211,7 +220,7 @@ std::vector<LoopSearch::State::Task> LoopSearch::State::tasksOf(std::size_t k,
   for (std::size_t i = 0; i < k; ++i) {
     if (i + 1 == k && !endIsDoubtful(*submaps_[i])) continue;
     const TPose2D T_k_i = frames[i] - frames[k];
-    const PathCircle &here = known_[k].path, &there = known_[i].path;
+    const PathCircle &here = paths_[k], &there = paths_[i];
     const mrpt::math::TPoint2D centre = T_k_i.composePoint({there.x, there.y});
     const double apart =
         std::hypot(centre.x - here.x, centre.y - here.y) - here.radius - there.radius - params_.sight;
@@ -230,7 +239,7 @@ std::vector<LoopSearch::State::Task> LoopSearch::State::tasksOf(std::size_t k,
 }
 
 void LoopSearch::State::attempt(std::size_t k, const SubmapMatcher& matcher, Task& task) const {
-  task.match = matcher.match(known_[task.older].submap, task.window);
+  task.match = matcher.match(known_[task.older], task.window);
   if (!task.match) return;
   task.match_covariance =
       covarianceOf(*task.match) + variances(params_.match_sigma_xy, params_.match_sigma_phi);
@@ -251,7 +260,7 @@ std::string LoopSearch::State::refusal(std::size_t k, const SubmapMatcher& match
     if (chi2 > kChi2Alone) return fmt::format("too far from where the chain leads: chi2 {:.0f}", chi2);
   }
   if (task.window.half_xy <= params_.rival_window) return {};
-  const double rival = matcher.rivalScore(known_[task.older].submap, task.window, match);
+  const double rival = matcher.rivalScore(known_[task.older], task.window, match);
   if (rival > 0)
     return fmt::format("ambiguous: scores {:.2f} here, {:.2f} elsewhere", match.searched.score, rival);
   return {};

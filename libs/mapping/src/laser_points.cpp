@@ -3,6 +3,8 @@
 #include <mrpt/poses/CPose3D.h>
 
 #include <cmath>
+#include <optional>
+#include <vector>
 
 namespace submap_slam {
 namespace {
@@ -63,20 +65,56 @@ void setNormals(LaserPoints& out, const LaserSweep& sweep) {
     setNormal(out.points[i], sweep.origin, tangents[i - sweep.begin], tangents[i - sweep.begin + 1]);
 }
 
+/** What the directions of the beams depend on. */
+struct BeamLayout {
+  std::size_t beams = 0;
+  float aperture = 0;
+  bool right_to_left = false;
+  double yaw = 0;
+  double mirror = 1;  ///< −1: a scanner mounted upside down (roll = π) sees its angles mirrored
+
+  explicit BeamLayout(const CObservation2DRangeScan& scan)
+      : beams(scan.getScanSize()),
+        aperture(scan.aperture),
+        right_to_left(scan.rightToLeft),
+        yaw(scan.sensorPose.yaw()),
+        mirror(std::cos(scan.sensorPose.roll()) < 0 ? -1.0 : 1.0) {}
+  bool operator==(const BeamLayout& o) const {
+    return beams == o.beams && aperture == o.aperture && right_to_left == o.right_to_left && yaw == o.yaw &&
+           mirror == o.mirror;
+  }
+};
+
+struct Direction {
+  double cos, sin;
+};
+
+/** Of all beams, in the robot's frame. Kept for the next scan, which mostly has the same. */
+const std::vector<Direction>& directionsOf(const CObservation2DRangeScan& scan) {
+  thread_local std::optional<BeamLayout> known;
+  thread_local std::vector<Direction> directions;
+  const BeamLayout layout(scan);
+  if (known && *known == layout) return directions;
+  directions.clear();
+  for (std::size_t i = 0; i < layout.beams; ++i) {
+    const double angle = layout.yaw + layout.mirror * static_cast<double>(scan.getScanAngle(i));
+    directions.push_back({std::cos(angle), std::sin(angle)});
+  }
+  known = layout;
+  return directions;
+}
+
 void append(LaserPoints& out, const CObservation2DRangeScan& scan, double max_range) {
   LaserSweep sweep;
   sweep.origin = {scan.sensorPose.x(), scan.sensorPose.y()};
   sweep.begin = out.points.size();
-  const double yaw = scan.sensorPose.yaw();
-  // A scanner mounted upside down (roll = π) sees its angles mirrored.
-  const double mirror = std::cos(scan.sensorPose.roll()) < 0 ? -1.0 : 1.0;
+  const std::vector<Direction>& directions = directionsOf(scan);
   for (std::size_t i = 0; i < scan.getScanSize(); ++i) {
     const double range = static_cast<double>(scan.getScanRange(i));
     if (!scan.getScanRangeValidity(i) || !(range > 0) || range > max_range) continue;
-    const double angle = yaw + mirror * static_cast<double>(scan.getScanAngle(i));
     LaserPoint p;
-    p.x = static_cast<float>(sweep.origin.x() + range * std::cos(angle));
-    p.y = static_cast<float>(sweep.origin.y() + range * std::sin(angle));
+    p.x = static_cast<float>(sweep.origin.x() + range * directions[i].cos);
+    p.y = static_cast<float>(sweep.origin.y() + range * directions[i].sin);
     out.points.push_back(p);
   }
   sweep.end = out.points.size();

@@ -53,7 +53,10 @@ const SurfelMap::Cell* SurfelMap::cellAt(int cx, int cy) const {
 }
 
 SurfelMap::Cell& SurfelMap::writableCell(int cx, int cy) {
-  const int tx = cx >> kTileBits, ty = cy >> kTileBits;
+  return writableTile(cx >> kTileBits, cy >> kTileBits).cells[cellInTile(cx, cy)];
+}
+
+SurfelMap::Tile& SurfelMap::writableTile(int tx, int ty) {
   growTo(tx, ty);
   auto& tile =
       directory_[static_cast<unsigned>(ty - tile_y0_) * tiles_x_ + static_cast<unsigned>(tx - tile_x0_)];
@@ -61,18 +64,18 @@ SurfelMap::Cell& SurfelMap::writableCell(int cx, int cy) {
     tile = std::make_shared<Tile>();
   else if (tile.use_count() > 1)
     tile = std::make_shared<Tile>(*tile);
-  return tile->cells[cellInTile(cx, cy)];
+  return *tile;
 }
 
 void SurfelMap::growTo(int tx, int ty) {
   const auto ix = static_cast<unsigned>(tx - tile_x0_), iy = static_cast<unsigned>(ty - tile_y0_);
   if (ix < tiles_x_ && iy < tiles_y_) return;
-  constexpr int kMargin = 8;  // tiles, so that growth is rare
+  const int margin = 8 + static_cast<int>(std::max(tiles_x_, tiles_y_)) / 4;  // tiles; growth is rare
   const bool first = tiles_x_ == 0;
-  const int x0 = std::min(first ? tx : tile_x0_, tx - kMargin),
-            y0 = std::min(first ? ty : tile_y0_, ty - kMargin);
-  const int x1 = std::max(first ? tx : tile_x0_ + static_cast<int>(tiles_x_), tx + kMargin + 1);
-  const int y1 = std::max(first ? ty : tile_y0_ + static_cast<int>(tiles_y_), ty + kMargin + 1);
+  const int x0 = std::min(first ? tx : tile_x0_, tx - margin),
+            y0 = std::min(first ? ty : tile_y0_, ty - margin);
+  const int x1 = std::max(first ? tx : tile_x0_ + static_cast<int>(tiles_x_), tx + margin + 1);
+  const int y1 = std::max(first ? ty : tile_y0_ + static_cast<int>(tiles_y_), ty + margin + 1);
   const auto nx = static_cast<unsigned>(x1 - x0), ny = static_cast<unsigned>(y1 - y0);
   std::vector<std::shared_ptr<Tile>> grown(static_cast<std::size_t>(nx) * ny);
   for (unsigned y = 0; y < tiles_y_; ++y)
@@ -132,9 +135,16 @@ void SurfelMap::addEndpoint(double x, double y, float normal_x, float normal_y) 
 }
 
 void SurfelMap::claimNeighbourhood(uint32_t surfel, int cx, int cy) {
+  Tile* tile = nullptr;
+  int tx = 0, ty = 0;
   for (const auto& [dx, dy] : claim_offsets_) {
     const auto distance2 = static_cast<float>(dx * dx + dy * dy);
-    Cell& cell = writableCell(cx + dx, cy + dy);
+    const int x = cx + dx, y = cy + dy;
+    if (!tile || x >> kTileBits != tx || y >> kTileBits != ty) {
+      tx = x >> kTileBits, ty = y >> kTileBits;
+      tile = &writableTile(tx, ty);
+    }
+    Cell& cell = tile->cells[cellInTile(x, y)];
     if (distance2 < cell.distance2) {
       cell.distance2 = distance2;
       cell.nearest = surfel;

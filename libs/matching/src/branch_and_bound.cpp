@@ -89,6 +89,8 @@ double farthest(const std::vector<TPoint2D>& points) {
   return std::sqrt(r2);
 }
 
+int halfCells(double half_xy, double resolution) { return static_cast<int>(std::ceil(half_xy / resolution)); }
+
 /** One search of a window. Offsets and headings run from 0; the window's centre is in their middle. */
 class WindowSearch {
  public:
@@ -97,6 +99,9 @@ class WindowSearch {
   /** The best leaf that has at least `least` and is in no branch that `counts` refuses; level < 0: none. */
   template <class Counts>
   Branch best(uint32_t least, const Counts& counts);
+
+  /** What the best leaf has at least: the sum of one at the window's centre. */
+  uint32_t sumAtCentre();
 
   /** Pose at the lowest offset and heading of a branch. */
   TPose2D poseOf(const Branch& branch) const;
@@ -129,13 +134,13 @@ class WindowSearch {
 WindowSearch::WindowSearch(const ScorePyramid& map, const std::vector<TPoint2D>& points,
                            const PoseWindow& window)
     : map_(map), points_(points), window_(window) {
-  half_cells_ = static_cast<int>(std::ceil(window.half_xy / map.resolution()));
+  half_cells_ = halfCells(window.half_xy, map.resolution());
   const double step = map.resolution() / std::max(farthest(points), map.resolution());
   half_turns_ = static_cast<int>(std::ceil(window.half_phi / step));
   turn_step_ = half_turns_ > 0 ? window.half_phi / half_turns_ : 0;
 
   // A branch of one level is bounded by the scores of the next one.
-  while (top_level_ + 2 < map.levels() && (2 << top_level_) <= 2 * half_cells_ + 1) ++top_level_;
+  top_level_ = std::max(0, std::min(map.levels(), usefulLevels(window.half_xy, map.resolution())) - 2);
   cells_.resize(static_cast<std::size_t>(top_level_ + 1));
   for (int level = 0; level <= top_level_; ++level)
     cells_[static_cast<std::size_t>(level)].resize(static_cast<std::size_t>((2 * half_turns_ >> level) + 1));
@@ -188,6 +193,13 @@ void WindowSearch::addFour(Branch first, uint32_t least, std::vector<Branch>& br
     branch.sum = sums[static_cast<std::size_t>(i)];
     if (isInside(branch) && branch.sum >= least) branches.push_back(branch);
   }
+}
+
+uint32_t WindowSearch::sumAtCentre() {
+  Branch centre;
+  centre.turn = half_turns_;
+  centre.dx = centre.dy = half_cells_;
+  return fourBounds(centre, 0).front();
 }
 
 /** The largest branches, the most promising one first. */
@@ -270,11 +282,18 @@ double meanScore(const std::vector<TPoint2D>& points, uint32_t sum) {
 
 }  // namespace
 
+int usefulLevels(double half_xy, double resolution) {
+  int top_level = 0;
+  while ((2 << top_level) <= 2 * halfCells(half_xy, resolution) + 1) ++top_level;
+  return top_level + 2;
+}
+
 std::optional<WindowMatch> searchWindow(const ScorePyramid& map, const std::vector<TPoint2D>& points,
                                         const PoseWindow& window, double min_score) {
   if (points.empty()) return std::nullopt;
   WindowSearch search(map, points, window);
-  const Branch best = search.best(leastSum(points, min_score), [](const Branch&) { return true; });
+  const uint32_t least = std::max(leastSum(points, min_score), search.sumAtCentre());
+  const Branch best = search.best(least, [](const Branch&) { return true; });
   if (best.level < 0) return std::nullopt;
   return WindowMatch{search.poseOf(best), meanScore(points, best.sum)};
 }

@@ -20,17 +20,21 @@ PosePrior loosePrior(const TPose2D& mean) {
   return prior;
 }
 
+MatchableSubmap matchable(const GridSubmap& submap, const SurfelMap& surfels,
+                          const SubmapMatcherParams& params) {
+  return {surfaceOf(surfels, params.surface), AgreementMap(*submap.packedEvidence(), params.agreement)};
+}
+
 }  // namespace
 
 MatchableSubmap matchable(const GridSubmap& submap, const SubmapMatcherParams& params) {
-  return SubmapMatcher(submap, params).reference();
+  return matchable(submap, surfelMapOf(submap, params.map), params);
 }
 
 SubmapMatcher::SubmapMatcher(const GridSubmap& reference, const SubmapMatcherParams& params)
     : params_(params),
       surfels_(surfelMapOf(reference, params.map)),
-      reference_{surfaceOf(surfels_, params.surface),
-                 AgreementMap(*reference.packedEvidence(), params.agreement)},
+      reference_(matchable(reference, surfels_, params)),
       pyramid_(*reference.packedEvidence(), params.pyramid),
       matcher_(params.matcher, params.map.search_radius) {}
 

@@ -103,6 +103,7 @@ class SurfelMap {
   }
   const Cell* cellAt(int cx, int cy) const;
   Cell& writableCell(int cx, int cy);
+  Tile& writableTile(int tx, int ty);
   void growTo(int tx, int ty);
   void addEndpoint(double x, double y, float normal_x, float normal_y);
   void claimNeighbourhood(uint32_t surfel, int cx, int cy);

@@ -28,6 +28,9 @@ struct WindowMatch {
   double score = 0;          ///< mean over the points of what they score there, in [0, 1]
 };
 
+/** Levels of a pyramid (cells of `resolution`, m) that the search of a window makes use of. */
+int usefulLevels(double half_xy, double resolution);
+
 /** The pose in the window where the points score best, found exactly (on the grid of translations of one cell
  * and turns that move the farthest point by one cell) by branch and bound (Hess et al. 2016, algorithm 3).
  * Empty if nothing reaches `min_score`.
