@@ -91,7 +91,7 @@ double overlapWeight(const PlacedLevels& placed, int stride) {
     double ww = 0, w4 = 0;
     for (std::size_t k = tile.first_member; k < tile.first_member + tile.members; ++k) {
       const PlacedLevel& submap = placed.submaps[placed.members[k].submap];
-      const double hits = submap.level().sample(submap.columnOf(a, b), submap.rowOf(a, b)).hits;
+      const double hits = submap.level().hitsAt(submap.columnOf(a, b), submap.rowOf(a, b));
       ww += hits * hits, w4 += hits * hits * hits * hits;
     }
     return ww > 0 ? 0.5 * (ww - w4 / ww) : 0;
