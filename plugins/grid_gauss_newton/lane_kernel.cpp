@@ -125,7 +125,7 @@ struct Loops {
     const EvidenceBlockTable& table = view.table;
     const auto number = [&](std::size_t k) { return table.numbers[block[k]]; };
     const auto log_odds = [&](std::size_t k) {
-      return cornersAt(table.log_odds + (table.blocks[number(k)].log_odds + within[k]));
+      return cornersAt(table.log_odds + table.blocks[number(k)].log_odds + within[k]);
     };
     const auto hits = [&](std::size_t k) {
       return cornersAt(table.hits + (kStored * number(k) + within[k]));
