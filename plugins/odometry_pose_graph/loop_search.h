@@ -15,7 +15,7 @@ namespace submap_slam::pose_graph {
 
 /** How far the chain of end poses may be off. */
 struct ChainNoise {
-  double usual_xy_per_m = 0.002;    ///< m per √m of path, beside the covariance of the end pose
+  double usual_xy_per_m = 0.004;    ///< m per √m of path, beside the covariance of the end pose
   double usual_phi_per_m = 0.0007;  ///< rad per √m of path
   double sigma_xy_per_m = 0.02;     ///< m per √m of path
   double sigma_phi_per_m = 0.005;   ///< rad per √m of path

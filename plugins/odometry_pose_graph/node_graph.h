@@ -22,8 +22,7 @@ struct FusionParams {
   double odometry_weight_xy = 1, odometry_weight_phi = 1;  ///< factors on the information the log suggests
   double node_distance = 0.2;                              ///< m between nodes with a pose of their own
   double node_angle = 0.15;                                ///< rad
-  double intra_sigma_xy = 0.005;                           ///< m, of a node in its submap
-  double intra_sigma_phi = 0.001;                          ///< rad
+  MatchNoise intra;                                        ///< of a node in its submap
 };
 
 /** Nodes and submap frames, and all that is known of them. */

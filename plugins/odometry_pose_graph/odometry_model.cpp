@@ -1,6 +1,7 @@
 #include "odometry_model.h"
 
 #include <mrpt/math/wrap2pi.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +15,8 @@ using mrpt::math::TPose2D;
 
 /** Fewer steps say too little of a log. */
 constexpr std::size_t kFewestSteps = 30;
+/** Over so many steps errors of odometry stand out from those of matches. */
+constexpr std::size_t kManySteps = 8;
 /** Steps that are shorter tell nothing of the gains. */
 constexpr double kShortest_m = 0.05, kSmallest_rad = 0.05;
 /** Odometry is not believed beyond 1 mm and 0.2 mrad over a metre. */
@@ -32,16 +35,25 @@ double quantile(std::vector<double>& values, double share) {
 /** A step between two graph nodes as both see it. */
 struct Step {
   TPose2D matched, odometry;
+  double heading;  ///< of the robot at its begin, in the submap (rad)
 };
 
-std::vector<Step> stepsOf(const GridSubmaps& submaps, const GraphNodes& nodes) {
-  std::vector<Step> steps;
-  for (std::size_t k = 0; k < submaps.size(); ++k)
+/** Steps without a gap, all of one submap. */
+using Run = std::vector<Step>;
+
+std::vector<Run> runsOf(const GridSubmaps& submaps, const GraphNodes& nodes) {
+  std::vector<Run> runs;
+  for (std::size_t k = 0; k < submaps.size(); ++k) {
+    runs.emplace_back();
     for (std::size_t g = 1; g < nodes[k].size(); ++g) {
       const SubmapNode &a = submaps[k]->nodes[nodes[k][g - 1]], &b = submaps[k]->nodes[nodes[k][g]];
-      if (const auto odometry = odometryBetween(a, b)) steps.push_back({b.pose - a.pose, *odometry});
+      if (const auto odometry = odometryBetween(a, b))
+        runs.back().push_back({b.pose - a.pose, *odometry, a.pose.phi});
+      else
+        runs.emplace_back();
     }
-  return steps;
+  }
+  return runs;
 }
 
 /** A gain beyond these says that something else is wrong. */
@@ -49,31 +61,71 @@ double plausible(double gain) { return gain > 0.5 && gain < 2 ? gain : 1; }
 
 /** Steps are chosen by what the scans say: those where odometry's own noise is large would pull the gains to
  * 0. */
-void estimateGains(OdometryModel& model, const std::vector<Step>& steps) {
+void estimateGains(OdometryModel& model, const std::vector<Run>& runs) {
   std::vector<double> xy, phi;
-  for (const Step& step : steps) {
-    const double moved = std::hypot(step.matched.x, step.matched.y);
-    const double turned = mrpt::math::wrapToPi(step.matched.phi);
-    if (moved > kShortest_m) xy.push_back(std::hypot(step.odometry.x, step.odometry.y) / moved);
-    if (std::abs(turned) > kSmallest_rad) phi.push_back(mrpt::math::wrapToPi(step.odometry.phi) / turned);
-  }
+  for (const Run& run : runs)
+    for (const Step& step : run) {
+      const double moved = std::hypot(step.matched.x, step.matched.y);
+      const double turned = mrpt::math::wrapToPi(step.matched.phi);
+      if (moved > kShortest_m) xy.push_back(std::hypot(step.odometry.x, step.odometry.y) / moved);
+      if (std::abs(turned) > kSmallest_rad) phi.push_back(mrpt::math::wrapToPi(step.odometry.phi) / turned);
+    }
   if (xy.size() >= kFewestSteps) model.gain_xy = plausible(1 / quantile(xy, 0.5));
   if (phi.size() >= kFewestSteps) model.gain_phi = plausible(1 / quantile(phi, 0.5));
 }
 
-void estimateVariances(OdometryModel& model, const std::vector<Step>& steps) {
+/** By how much odometry and scans differ over some steps, and how long these are. */
+struct Spread {
+  std::size_t samples = 0;
+  double length = 0;       ///< mean, see odometryLength
+  double xy = 0, phi = 0;  ///< variances (m², rad²) by their worst tenth
+};
+
+/** Over all stretches of `lag` steps. Each step is turned as the scans say, so that errors of the heading do
+ * not pass for such of the way. */
+Spread spreadOver(std::size_t lag, const OdometryModel& model, const std::vector<Run>& runs) {
+  Spread spread;
   std::vector<double> xy, phi;
-  for (const Step& step : steps) {
-    const double length = odometryLength(step.matched);
-    if (length <= 0) continue;
-    const Eigen::Vector3d e = relationError({}, step.matched, model.corrected(step.odometry)).e;
-    xy.push_back(e.head<2>().squaredNorm() / length);
-    phi.push_back(e.z() * e.z() / length);
+  for (const Run& run : runs) {
+    std::vector<Eigen::Vector4d> sums{Eigen::Vector4d::Zero()};  // e in the axes of the submap, and length
+    for (const Step& step : run) {
+      const Eigen::Vector3d e = relationError({}, step.matched, model.corrected(step.odometry)).e;
+      Eigen::Vector4d sum = sums.back();
+      sum.head<2>() += Eigen::Rotation2Dd(step.heading) * e.head<2>();
+      sum[2] += e.z();
+      sum[3] += odometryLength(step.matched);
+      sums.push_back(sum);
+    }
+    for (std::size_t n = lag; n < sums.size(); ++n) {
+      const Eigen::Vector4d over = sums[n] - sums[n - lag];
+      xy.push_back(over.head<2>().squaredNorm());
+      phi.push_back(over[2] * over[2]);
+      spread.length += over[3];
+    }
   }
-  if (xy.size() < kFewestSteps) return;
-  model.steps = xy.size();
-  model.variance_xy = std::max(kLeastVarianceXy, quantile(xy, kWorst) / kChi2Two);
-  model.variance_phi = std::max(kLeastVariancePhi, quantile(phi, kWorst) / kChi2One);
+  spread.samples = xy.size();
+  if (xy.empty()) return spread;
+  spread.length /= static_cast<double>(xy.size());
+  spread.xy = quantile(xy, kWorst) / kChi2Two;
+  spread.phi = quantile(phi, kWorst) / kChi2One;
+  return spread;
+}
+
+/** Errors of odometry add up along the way; those of matches, of each by itself, do not. So odometry's are
+ * what the spread grows by, and what single steps have beyond the errors of matches; at most all of it. */
+void estimateVariances(OdometryModel& model, const std::vector<Run>& runs, const MatchNoise& match) {
+  const Spread one = spreadOver(1, model, runs), many = spreadOver(kManySteps, model, runs);
+  if (one.samples < kFewestSteps || one.length <= 0) return;
+  const auto perLength = [&](double Spread::*variance, double sigma_of_match) {
+    const double at_most = one.*variance / one.length;
+    if (many.samples < kFewestSteps) return at_most;
+    const double beyond_matches = at_most - 2 * sigma_of_match * sigma_of_match / one.length;
+    const double growth = (many.*variance - one.*variance) / (many.length - one.length);
+    return std::min(at_most, std::max(beyond_matches, growth));
+  };
+  model.steps = one.samples;
+  model.variance_xy = std::max(kLeastVarianceXy, perLength(&Spread::xy, match.sigma_xy));
+  model.variance_phi = std::max(kLeastVariancePhi, perLength(&Spread::phi, match.sigma_phi));
 }
 
 }  // namespace
@@ -110,11 +162,11 @@ Eigen::Matrix3d OdometryModel::covariance(double length) const {
   return Eigen::Vector3d(variance_xy * length, variance_xy * length, variance_phi * length).asDiagonal();
 }
 
-OdometryModel odometryModelOf(const GridSubmaps& submaps, const GraphNodes& nodes) {
-  const std::vector<Step> steps = stepsOf(submaps, nodes);
+OdometryModel odometryModelOf(const GridSubmaps& submaps, const GraphNodes& nodes, const MatchNoise& match) {
+  const std::vector<Run> runs = runsOf(submaps, nodes);
   OdometryModel model;
-  estimateGains(model, steps);
-  estimateVariances(model, steps);
+  estimateGains(model, runs);
+  estimateVariances(model, runs, match);
   return model;
 }
 

@@ -38,7 +38,14 @@ struct OdometryModel {
 /** What the variance of odometry grows with: metres moved, and 0.3 m for each radian turned. */
 double odometryLength(const mrpt::math::TPose2D& motion);
 
-/** Medians over all steps between graph nodes of a submap, so that slips, which are few, don't count. */
-OdometryModel odometryModelOf(const GridSubmaps& submaps, const GraphNodes& nodes);
+/** Errors of the pose of a node in its submap, of each by itself. */
+struct MatchNoise {
+  double sigma_xy = 0.005;   ///< m
+  double sigma_phi = 0.001;  ///< rad
+};
+
+/** Medians and quantiles over all steps between graph nodes of a submap, so that slips, which are few, don't
+ * count. */
+OdometryModel odometryModelOf(const GridSubmaps& submaps, const GraphNodes& nodes, const MatchNoise& match);
 
 }  // namespace submap_slam::pose_graph

@@ -174,9 +174,9 @@ void OdometryPoseGraph::describe(ParameterTable& table) {
   table.add("node_distance", fusion_.node_distance, "m", {0.01, 100},
             "Distance between nodes with a pose of their own in the graph.");
   table.add("node_angle", fusion_.node_angle, "rad", {0.01, 7}, "The same for the heading; either suffices.");
-  table.add("intra_sigma_xy", fusion_.intra_sigma_xy, "m", {1e-5, 10},
+  table.add("intra_sigma_xy", fusion_.intra.sigma_xy, "m", {1e-5, 10},
             "Uncertainty of a node's pose in its submap.");
-  table.add("intra_sigma_phi", fusion_.intra_sigma_phi, "rad", {1e-6, 1}, "The same for the heading.");
+  table.add("intra_sigma_phi", fusion_.intra.sigma_phi, "rad", {1e-6, 1}, "The same for the heading.");
 }
 
 JoinedMap OdometryPoseGraph::join(const GridSubmaps& submaps, const JoinedMap& initial,

@@ -40,7 +40,7 @@ GridSubmaps straightSubmaps(std::size_t count, std::size_t nodes, Error error) {
 TPose2D exact(const TPose2D& motion) { return motion; }
 
 OdometryModel modelOf(const GridSubmaps& submaps) {
-  return odometryModelOf(submaps, graphNodesOf(submaps, 0.2, 0.15));
+  return odometryModelOf(submaps, graphNodesOf(submaps, 0.2, 0.15), {});
 }
 
 TEST(GraphNodes, AreFarEnoughApart) {
@@ -60,6 +60,23 @@ TEST(OdometryModel, FindsTheNoiseOfTheLog) {
   EXPECT_NEAR(std::sqrt(model.variance_xy * kStep), sigma_xy, 0.1 * sigma_xy);
   EXPECT_NEAR(std::sqrt(model.variance_phi * kStep), sigma_phi, 0.1 * sigma_phi);
   EXPECT_NEAR(model.gain_xy, 1, 0.01);
+}
+
+/** Matches err each by itself, odometry's errors add up: neither is taken for the other. */
+TEST(OdometryModel, ErrorsOfMatchesAreNotThoseOfOdometry) {
+  NormalGenerator normal(7, 0);
+  const double sigma_xy = 0.002, sigma_phi = 0.0005;  // per step
+  const MatchNoise match;
+  auto submaps = straightSubmaps(20, 50, [&](const TPose2D& motion) {
+    return motion + TPose2D(sigma_xy * normal(), sigma_xy * normal(), sigma_phi * normal());
+  });
+  for (auto& submap : submaps)
+    for (auto& node : submap->nodes)
+      node.pose = node.pose +
+                  TPose2D(match.sigma_xy * normal(), match.sigma_xy * normal(), match.sigma_phi * normal());
+  const OdometryModel model = modelOf(submaps);
+  EXPECT_NEAR(std::sqrt(model.variance_xy * kStep), sigma_xy, 0.25 * sigma_xy);
+  EXPECT_NEAR(std::sqrt(model.variance_phi * kStep), sigma_phi, 0.25 * sigma_phi);
 }
 
 TEST(OdometryModel, AFewSlipsDontCount) {
@@ -134,7 +151,7 @@ TEST(FuseOdometry, WeighsMatchAgainstOdometry) {
   const auto submaps = straightSubmaps(1, 40, [](const TPose2D& m) { return TPose2D(1.01 * m.x, 0, 0); });
   FusionParams params;
   params.node_distance = 9.6;  // nodes 0 and 39
-  params.intra_sigma_xy = 2;
+  params.intra.sigma_xy = 2;
   params.odometry_weight_xy = 0.5;
   OdometryModel model;
   model.variance_xy = model.variance_phi = 1;
@@ -147,6 +164,20 @@ TEST(FuseOdometry, WeighsMatchAgainstOdometry) {
     EXPECT_NEAR(fused.nodes[0][39].x, expected, 1e-4);
     EXPECT_NEAR(fused.nodes[0][20].x - 20 * kStep, (expected - matched) * 20 / 39, 1e-4);
   }
+}
+
+/** Matches that fall back by 0.4 % along the way, in submaps whose end poses say that they may: odometry, which
+ * knows better, stretches submaps, as long as it is worth it. */
+TEST(FuseOdometry, GoodOdometryBendsSubmaps) {
+  const auto submaps = straightSubmaps(3, 40, [](const TPose2D& m) { return TPose2D(1.004 * m.x, 0, 0); });
+  for (const auto& submap : submaps) submap->end_pose.cov.setDiagonal(0.2 * 0.2);
+  const auto reached = [&](double variance) {
+    OdometryModel model;
+    model.variance_xy = model.variance_phi = variance;
+    return fuseOdometry(submaps, chainOf(submaps), {}, model).frames.frames[2].x;
+  };
+  EXPECT_GT(reached(1e-4), 20.03);  // of 20.08: within a section the matches count as rigid
+  EXPECT_NEAR(reached(0.04), 20, 0.005);
 }
 
 /** Between the last node of a submap and the next submap's frame: by hand as above. */
