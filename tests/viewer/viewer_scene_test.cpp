@@ -70,7 +70,7 @@ using mrpt::opengl::CSetOfLines;
 /** A task that makes the map by fusing the evidence of the submaps. */
 JoinTask joinTask(GridSubmaps submaps, JoinerChain joiners, Edits edits = {},
                   std::optional<JoinedMap> from = {}) {
-  const auto fuse = [](const GridSubmaps& joined, const JoinedMap& map) {
+  const auto fuse = [](const GridSubmaps& joined, const JoinedMap& map, Reporter&) {
     return fuseEvidence(joined, map.frames, 0);
   };
   return {std::move(submaps), std::move(edits), std::move(joiners), fuse, std::move(from)};

@@ -53,10 +53,12 @@ void describeJoiningParameters(ParameterTable& table, Configuration& config) {
       "update_growth", config.joining.update_growth, "", {1, 1e6},
       "Then the next map is made when there are about so many times the submaps of the last one; 1: after "
       "every submap");
-  table.add("map", config.joining.map,
-            "Where a joiner leaves the making of the global map to the program: from the scans that the "
-            "submaps keep (where they keep none, as the other), or by fusing the submaps' evidence",
-            {"scans", "submaps"});
+  table.add(
+      "map", config.joining.map,
+      "Where a joiner leaves the making of the global map to the program: from the scans that the "
+      "submaps keep (where they keep none, or were made with other beams, as the other), or by fusing the "
+      "submaps' evidence",
+      {"scans", "submaps"});
   table.add(
       "map_resolution", config.joining.map_resolution, "m", {0, 10},
       "Cell size of the global map where a joiner leaves its making to the program; 0: that of the submaps, "

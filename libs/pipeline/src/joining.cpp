@@ -63,10 +63,10 @@ void run(const SubmapJoiner& joiner, IncrementalJoin& at_work, const GridSubmaps
 }
 
 /** Makes the map that a joiner left over, and gives the memory back that this leaves free. */
-void fuse(const GridSubmaps& submaps, const MapMaker& make_map, JoinOutcome& result) {
+void fuse(const GridSubmaps& submaps, const MapMaker& make_map, JoinOutcome& result, Reporter& reporter) {
   const StageTimer timer;
   JoinedMap& joined = result.map;
-  if (joined.map.observedCells() == 0) joined.map = make_map(submaps, joined);
+  if (joined.map.observedCells() == 0) joined.map = make_map(submaps, joined, reporter);
   malloc_trim(0);
   result.stages.push_back(timer.record("fuse"));
 }
@@ -75,9 +75,13 @@ void fuse(const GridSubmaps& submaps, const MapMaker& make_map, JoinOutcome& res
 
 MapMaker mapMaker(const Configuration& config) {
   return [from_scans = config.joining.map == "scans", resolution = config.joining.map_resolution,
-          mapper = config.mapper](const GridSubmaps& submaps, const JoinedMap& joined) {
-    if (from_scans)
+          mapper = config.mapper](const GridSubmaps& submaps, const JoinedMap& joined, Reporter& reporter) {
+    if (from_scans) {
       if (auto map = mapFromScans(submaps, joined, mapper, resolution)) return std::move(*map);
+      reporter.log(
+          "map fused from the submaps' evidence: they keep no scans, or were made with other parameters of "
+          "the beams");
+    }
     return fuseEvidence(submaps, joined.frames, resolution);
   };
 }
@@ -111,14 +115,14 @@ JoinOutcome Joining::goOn(const GridSubmaps& submaps, Reporter& reporter,
     run(*joiners_[k], *at_work_[k], submaps, result, reporter);
   if (const auto breaks = describeBreaks(submaps, result.map.constraints); !breaks.empty())
     reporter.warning(breaks);
-  fuse(submaps, make_map_, result);
+  fuse(submaps, make_map_, result, reporter);
   return result;
 }
 
 JoinOutcome Joining::joinAgain(const GridSubmaps& submaps, JoinedMap initial, Reporter& reporter) const {
   JoinOutcome result{std::move(initial), false, {}};
   if (!joiners_.empty()) run(*joiners_.back(), *joiners_.back()->incremental(), submaps, result, reporter);
-  fuse(submaps, make_map_, result);
+  fuse(submaps, make_map_, result, reporter);
   return result;
 }
 

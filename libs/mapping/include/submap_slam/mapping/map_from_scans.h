@@ -17,7 +17,7 @@ namespace submap_slam {
  * @param resolution m per cell; 0: as mapResolution() says
  * @return nothing if a submap with evidence keeps no scan, or if `mapper` does not draw the scans of the
  * first one as its evidence was drawn: whoever made the submaps had other parameters, in a file that keeps
- * evidence alone Throws std::invalid_argument if frames or nodes are not as many as those of the submaps. */
+ * evidence alone. Throws std::invalid_argument if frames or nodes are not as many as those of the submaps. */
 std::optional<PackedEvidence> mapFromScans(const GridSubmaps& submaps, const JoinedMap& joined,
                                            const GridMapperParams& mapper, double resolution);
 

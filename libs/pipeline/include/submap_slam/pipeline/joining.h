@@ -4,17 +4,17 @@
 #include <submap_slam/core/joined_map.h>
 #include <submap_slam/pipeline/configuration.h>
 #include <submap_slam/pipeline/reporter.h>
+#include <submap_slam/pipeline/stage_timer.h>
 
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include <submap_slam/pipeline/stage_timer.h>
 namespace submap_slam {
 
 /** Makes the global map of joined submaps. */
-using MapMaker = std::function<PackedEvidence(const GridSubmaps&, const JoinedMap&)>;
+using MapMaker = std::function<PackedEvidence(const GridSubmaps&, const JoinedMap&, Reporter&)>;
 
 /** The one that [joining] map and map_resolution ask for; keeps a copy of what it needs. */
 MapMaker mapMaker(const Configuration& config);
