@@ -25,9 +25,10 @@ using mrpt::math::TPose2D;
 constexpr double kSection_m = 1;
 /** Two poses are never nearer, as far as drift goes. */
 constexpr double kShortestPath_m = 0.01;
-/** Odometry's variance over that of the matches from which bending submaps gains nothing: at 4 it lowers the
- * drift by a tenth. */
-constexpr double kWorthBending = 4;
+/** The end pose of a submap, as a relation of its frame and the next one. */
+bool isEndOfSubmap(const GridSubmaps& submaps, const Link& link) {
+  return !link.loop && !link.by_hand && link.to == link.from + 1 && submaps[link.from]->has_successor;
+}
 
 /** One problem from the first block to the last residual. */
 class NodeProblem {
@@ -36,19 +37,16 @@ class NodeProblem {
               const GraphNodes& nodes, const OdometryModel& odometry)
       : submaps_(submaps), params_(params), graph_nodes_(nodes), odometry_(odometry), problem_(ownership()) {
     placeBlocks(graph);
-    const std::vector<Bend> bends = moveNodes() ? bendsOf(graph) : std::vector<Bend>();
+    const std::vector<Bend> bends = bendsOf(graph);
+    bent_ = !bends.empty();
     for (const Link& link : graph.links)
-      if (bends.empty() || !isEndOfSubmap(link))
+      if (!bent_ || !isEndOfSubmap(submaps_, link))
         add(link.T_a_b, link.usual_covariance, blocks_[link.from].front(), blocks_[link.to].front(),
             link.by_hand ? nullptr : &cauchy_);
     if (!moveNodes()) return;
-    std::vector<bool> bent(submaps.size(), false);
-    for (const Bend& bend : bends) {
-      addBent(bend);
-      bent[bend.end->from] = true;
-    }
+    for (const Bend& bend : bends) addBent(bend);
     for (std::size_t k = 0; k < submaps.size(); ++k)
-      if (!bent[k]) addRigid(k);
+      if (!bent_ || !submaps[k]->has_successor) addRigid(k);
     if (params.odometry == OdometryResidual::kSubmap)
       addOdometryFromFrames();
     else
@@ -68,6 +66,8 @@ class NodeProblem {
 
   /** T_s_node: matched poses, moved by what the graph nodes around them were moved. */
   std::vector<TPose2D> nodesOf(std::size_t k) const;
+
+  bool bent() const { return bent_; }
 
   bool moveNodes() const { return params_.odometry != OdometryResidual::kOff && odometry_.known(); }
 
@@ -100,14 +100,11 @@ class NodeProblem {
     return std::max(kShortestPath_m, odometryLength(nodes > 1 ? T_s_end - node(k, nodes - 1).pose : T_s_end));
   }
 
-  bool isEndOfSubmap(const Link& link) const {
-    return !link.loop && !link.by_hand && link.to == link.from + 1 && submaps_[link.from]->has_successor;
-  }
-
   void placeBlocks(const FrameGraph& graph);
   std::vector<Bend> bendsOf(const FrameGraph& graph) const;
   void addRigid(std::size_t k);
   void addBent(const Bend& bend);
+  Matrix3d odometryCovariance(double length) const;
   void addOdometryFromFrames();
   void addOdometryAlongThePath();
   void addOdometry(const TPose2D& motion, double length, PoseBlock& a, PoseBlock& b);
@@ -132,6 +129,7 @@ class NodeProblem {
   std::vector<std::vector<PoseBlock>>
       blocks_;                     ///< of the graph nodes; the first one of a submap is its frame
   std::deque<PoseBlock> anchors_;  ///< of submaps that bend
+  bool bent_ = false;
 };
 
 void NodeProblem::placeBlocks(const FrameGraph& graph) {
@@ -145,20 +143,25 @@ void NodeProblem::placeBlocks(const FrameGraph& graph) {
   problem_.SetParameterBlockConstant(blocks_.front().front().values);
 }
 
-/** All submaps with an end, or none if odometry is so much worse than the matches that it has nothing to say
- * of how a submap bends. */
+/** All submaps with a successor, or none if odometry is so much worse than the matches that it has nothing to
+ * say of how a submap bends. Residuals from the frame to each node count odometry's first steps many times:
+ * they never bend submaps. */
 std::vector<NodeProblem::Bend> NodeProblem::bendsOf(const FrameGraph& graph) const {
+  if (!moveNodes() || params_.odometry != OdometryResidual::kConsecutive) return {};
   std::vector<Bend> bends;
   std::vector<DriftRate> rates;
   for (const Link& link : graph.links) {
-    if (!isEndOfSubmap(link)) continue;
+    if (!isEndOfSubmap(submaps_, link)) continue;
     double length = lengthToEnd(link.from);
     for (std::size_t g = 1; g < blocks_[link.from].size(); ++g) length += lengthTo(link.from, g);
     bends.push_back({&link, SubmapDrift(link.usual_covariance, length)});
     rates.push_back(bends.back().drift.rate());
   }
   const DriftRate usual = medianOf(rates);
-  if (odometry_.variance_xy > kWorthBending * usual.xy) return {};
+  const Matrix3d odometry = odometryCovariance(1);
+  const bool worth =
+      odometry(0, 0) <= params_.bend_up_to * usual.xy || odometry(2, 2) <= params_.bend_up_to * usual.phi;
+  if (!worth) return {};
   for (Bend& bend : bends) bend.drift.limit(usual);
   return bends;
 }
@@ -193,12 +196,16 @@ void NodeProblem::addBent(const Bend& bend) {
       blocks_[bend.end->to].front());
 }
 
-void NodeProblem::addOdometry(const TPose2D& motion, double length, PoseBlock& a, PoseBlock& b) {
-  constexpr double kStandstill_m = 0.01;  // no motion is known exactly
-  Matrix3d covariance = odometry_.covariance(std::max(length, kStandstill_m));
+Matrix3d NodeProblem::odometryCovariance(double length) const {
+  Matrix3d covariance = odometry_.covariance(length);
   covariance.topLeftCorner<2, 2>() /= params_.odometry_weight_xy;
   covariance(2, 2) /= params_.odometry_weight_phi;
-  add(motion, covariance, a, b);
+  return covariance;
+}
+
+void NodeProblem::addOdometry(const TPose2D& motion, double length, PoseBlock& a, PoseBlock& b) {
+  constexpr double kStandstill_m = 0.01;  // no motion is known exactly
+  add(motion, odometryCovariance(std::max(length, kStandstill_m)), a, b);
 }
 
 void NodeProblem::addOdometryFromFrames() {
@@ -255,12 +262,14 @@ std::vector<TPose2D> NodeProblem::nodesOf(std::size_t k) const {
 }
 
 /** The usual covariances, divided by what the loss makes of their weight at the result: ρ' = 1 / (1 + eᵀ Ω
- * e). */
-void weightByTheResult(FrameGraph& graph) {
+ * e). The end of a bent submap is off by what odometry knows better, which is no reason to doubt the result.
+ */
+void weightByTheResult(FrameGraph& graph, const GridSubmaps& submaps, bool bent) {
   for (Link& link : graph.links) {
     const Vector3d e = relationError(graph.frames[link.from], graph.frames[link.to], link.T_a_b).e;
     link.covariance = link.usual_covariance;
-    if (!link.loop && !link.by_hand) link.covariance *= 1 + e.dot(link.usual_covariance.inverse() * e);
+    const bool certain = link.loop || link.by_hand || (bent && isEndOfSubmap(submaps, link));
+    if (!certain) link.covariance *= 1 + e.dot(link.usual_covariance.inverse() * e);
   }
 }
 
@@ -286,7 +295,8 @@ FusedGraph fuseOdometry(const GridSubmaps& submaps, FrameGraph found, const Fusi
       if (problem.moveNodes()) fused.nodes.push_back(problem.nodesOf(k));
     }
   }
-  weightByTheResult(found);
+  fused.bent = problem.bent();
+  weightByTheResult(found, submaps, fused.bent);
   fused.frames = std::move(found);
   return fused;
 }

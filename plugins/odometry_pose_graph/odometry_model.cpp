@@ -112,13 +112,14 @@ Spread spreadOver(std::size_t lag, const OdometryModel& model, const std::vector
 }
 
 /** Errors of odometry add up along the way; those of matches, of each by itself, do not. So odometry's are
- * what the spread grows by, and what single steps have beyond the errors of matches; at most all of it. */
+ * what the spread grows by, and what single steps have beyond the errors of matches; at most all of it, as in
+ * logs of submaps too short for that. */
 void estimateVariances(OdometryModel& model, const std::vector<Run>& runs, const MatchNoise& match) {
   const Spread one = spreadOver(1, model, runs), many = spreadOver(kManySteps, model, runs);
   if (one.samples < kFewestSteps || one.length <= 0) return;
   const auto perLength = [&](double Spread::*variance, double sigma_of_match) {
     const double at_most = one.*variance / one.length;
-    if (many.samples < kFewestSteps) return at_most;
+    if (many.samples < kFewestSteps || many.length <= one.length) return at_most;
     const double beyond_matches = at_most - 2 * sigma_of_match * sigma_of_match / one.length;
     const double growth = (many.*variance - one.*variance) / (many.length - one.length);
     return std::min(at_most, std::max(beyond_matches, growth));

@@ -22,8 +22,9 @@ std::optional<mrpt::math::TPose2D> odometryBetween(const SubmapNode& a, const Su
 /** How far to believe the odometry of a log, from what the scans say: the weights of its residuals, for
  * translation and rotation apart.
  *
- * All disagreement between odometry and scans is put down to odometry. Where scans see nothing, along a
- * corridor, the matched poses follow odometry and agree with it whatever its error.
+ * Disagreement between odometry and scans that grows with the way is put down to odometry, drift of the
+ * matches included, and so is what single steps have beyond the noise of matches. Where scans see nothing,
+ * along a corridor, the matched poses follow odometry and agree with it whatever its error.
  */
 struct OdometryModel {
   double gain_xy = 1, gain_phi = 1;          ///< true motion / odometry's motion

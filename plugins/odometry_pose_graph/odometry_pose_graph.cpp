@@ -21,11 +21,12 @@ OdometryResidual residualOf(const std::string& name) {
                             : OdometryResidual::kConsecutive;
 }
 
-std::string describeOdometry(const OdometryModel& odometry) {
+std::string describeOdometry(const FusedGraph& fused) {
+  const OdometryModel& odometry = fused.odometry;
   if (!odometry.known()) return "no odometry to fuse";
-  return fmt::format("odometry strays {:.0f} mm and {:.2f} deg per root metre, scaled by {:.3f} and {:.3f}",
+  return fmt::format("odometry strays {:.0f} mm and {:.2f} deg per root metre, scaled by {:.3f} and {:.3f}{}",
                      1e3 * std::sqrt(odometry.variance_xy), std::sqrt(odometry.variance_phi) * 180 / M_PI,
-                     odometry.gain_xy, odometry.gain_phi);
+                     odometry.gain_xy, odometry.gain_phi, fused.bent ? ", and bends submaps" : "");
 }
 
 /** The chain as the fusion leaves it, so that a joiner behind does not go back to the end poses; with less
@@ -124,9 +125,8 @@ JoinedMap GrowingGraph::join(const GridSubmaps& submaps, const JoinedMap& initia
                                       [](const Constraint& c) { return c.accepted; });
   const bool converged = !found.stopped && fused.solution == Solution::kConverged;
   joined.status = converged ? JoinStatus::kConverged : JoinStatus::kIterationLimit;
-  joined.reason =
-      fmt::format("{} of {} loop candidates accepted{}; {}", accepted, found.candidates.size(),
-                  found.stopped ? ", stopped before the end" : "", describeOdometry(fused.odometry));
+  joined.reason = fmt::format("{} of {} loop candidates accepted{}; {}", accepted, found.candidates.size(),
+                              found.stopped ? ", stopped before the end" : "", describeOdometry(fused));
   return joined;
 }
 
@@ -171,11 +171,17 @@ void OdometryPoseGraph::describe(ParameterTable& table) {
   table.add("odometry_weight_xy", fusion_.odometry_weight_xy, "", {1e-6, 1e6},
             "Factor on the weight that the log suggests for the translation of odometry.");
   table.add("odometry_weight_phi", fusion_.odometry_weight_phi, "", {1e-6, 1e6}, "The same for the heading.");
+  table.add(
+      "bend_up_to", fusion_.bend_up_to, "", {0, 1e6},
+      "Submaps bend if the variance of consecutive odometry is at most so many times the drift of matches; "
+      "0: never.");
   table.add("node_distance", fusion_.node_distance, "m", {0.01, 100},
             "Distance between nodes with a pose of their own in the graph.");
   table.add("node_angle", fusion_.node_angle, "rad", {0.01, 7}, "The same for the heading; either suffices.");
-  table.add("intra_sigma_xy", fusion_.intra.sigma_xy, "m", {1e-5, 10},
-            "Uncertainty of a node's pose in its submap.");
+  table.add(
+      "intra_sigma_xy", fusion_.intra.sigma_xy, "m", {1e-5, 10},
+      "Uncertainty of a node's match, of each by itself; what steps of odometry differ by beyond that is "
+      "put down to odometry.");
   table.add("intra_sigma_phi", fusion_.intra.sigma_phi, "rad", {1e-6, 1}, "The same for the heading.");
 }
 

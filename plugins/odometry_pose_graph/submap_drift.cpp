@@ -31,9 +31,9 @@ double median(std::vector<double> values) {
 }  // namespace
 
 SubmapDrift::SubmapDrift(const Matrix3d& end_covariance, double length)
-    : length_(length),
-      phi_(std::max(end_covariance(2, 2) / length, kLeastPhi_rad * kLeastPhi_rad)),
-      end_(Matrix3d::Zero()) {
+    : phi_(std::max(end_covariance(2, 2) / length, kLeastPhi_rad * kLeastPhi_rad)),
+      end_covariance_(end_covariance),
+      last_step_(Matrix3d::Zero()) {
   // What turns on the way move the end by goes with its heading, and comes again with the turns.
   const Vector2d with_phi = end_covariance.block<2, 1>(0, 2);
   const Matrix2d by_turns = with_phi * with_phi.transpose() / (phi_ * length);
@@ -43,8 +43,7 @@ SubmapDrift::SubmapDrift(const Matrix3d& end_covariance, double length)
 
 void SubmapDrift::limit(const DriftRate& usual) {
   const double share = std::min({1.0, usual.xy / rate().xy, usual.phi / phi_});
-  end_.topLeftCorner<2, 2>() = (1 - share) * length_ * xy_;
-  end_(2, 2) = (1 - share) * length_ * phi_;
+  last_step_ = (1 - share) * end_covariance_;
   xy_ *= share;
   phi_ *= share;
 }
@@ -57,7 +56,7 @@ Matrix3d SubmapDrift::over(double length, const TPose2D& T_s_a) const {
 }
 
 Matrix3d SubmapDrift::overLast(double length, const TPose2D& T_s_a) const {
-  return over(length, T_s_a) + turnedTo(T_s_a, end_);
+  return over(length, T_s_a) + turnedTo(T_s_a, last_step_);
 }
 
 DriftRate medianOf(const std::vector<DriftRate>& rates) {

@@ -32,10 +32,10 @@ class SubmapDrift {
   Eigen::Matrix3d overLast(double length, const mrpt::math::TPose2D& T_s_a) const;
 
  private:
-  double length_;
-  Eigen::Matrix2d xy_;   ///< m² per length, in the axes of the submap
-  double phi_;           ///< rad² per length
-  Eigen::Matrix3d end_;  ///< of the last step, in the axes of the submap
+  Eigen::Matrix2d xy_;  ///< m² per length, in the axes of the submap
+  double phi_;          ///< rad² per length
+  Eigen::Matrix3d end_covariance_;
+  Eigen::Matrix3d last_step_;  ///< what it has beyond the walk, in the axes of the submap
 };
 
 /** Of xy and phi, each by itself; zero if there is nothing. */

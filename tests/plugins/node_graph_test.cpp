@@ -166,18 +166,32 @@ TEST(FuseOdometry, WeighsMatchAgainstOdometry) {
   }
 }
 
-/** Matches that fall back by 0.4 % along the way, in submaps whose end poses say that they may: odometry, which
- * knows better, stretches submaps, as long as it is worth it. */
+/** Matches that fall back by 0.4 % along the way, in submaps whose end poses say that they may: odometry,
+ * which knows better, stretches submaps, as long as it is worth it. */
 TEST(FuseOdometry, GoodOdometryBendsSubmaps) {
   const auto submaps = straightSubmaps(3, 40, [](const TPose2D& m) { return TPose2D(1.004 * m.x, 0, 0); });
   for (const auto& submap : submaps) submap->end_pose.cov.setDiagonal(0.2 * 0.2);
-  const auto reached = [&](double variance) {
+  const auto fusedWith = [&](double variance, const FusionParams& params) {
     OdometryModel model;
     model.variance_xy = model.variance_phi = variance;
-    return fuseOdometry(submaps, chainOf(submaps), {}, model).frames.frames[2].x;
+    return fuseOdometry(submaps, chainOf(submaps), params, model);
   };
-  EXPECT_GT(reached(1e-4), 20.03);  // of 20.08: within a section the matches count as rigid
-  EXPECT_NEAR(reached(0.04), 20, 0.005);
+  const FusedGraph good = fusedWith(1e-4, {}), bad = fusedWith(0.04, {});
+  EXPECT_TRUE(good.bent);
+  EXPECT_GT(good.frames.frames[2].x, 20.03);  // of 20.08: within a section the matches count as rigid
+  EXPECT_EQ(good.frames.links[0].covariance, good.frames.links[0].usual_covariance);
+  EXPECT_FALSE(bad.bent);
+  EXPECT_NEAR(bad.frames.frames[2].x, 20, 0.005);
+
+  FusionParams params;
+  params.odometry_weight_xy = params.odometry_weight_phi = 1e-3;
+  EXPECT_FALSE(fusedWith(1e-4, params).bent);
+  params = {};
+  params.bend_up_to = 0;
+  EXPECT_FALSE(fusedWith(1e-4, params).bent);
+  params = {};
+  params.odometry = OdometryResidual::kSubmap;
+  EXPECT_FALSE(fusedWith(1e-4, params).bent);
 }
 
 /** Between the last node of a submap and the next submap's frame: by hand as above. */

@@ -41,15 +41,34 @@ TEST(SubmapDrift, IsSeenInTheAxesOfThePose) {
   EXPECT_NEAR(across(1, 1), straight(0, 0), 1e-15);
 }
 
-TEST(SubmapDrift, WhatIsUnusualComesWithTheLastStep) {
+/** Of the end of a straight path along x, put together from sections with their lever arms. */
+Matrix3d endOfSections(const SubmapDrift& drift, int sections) {
+  Matrix3d end = Matrix3d::Zero();
+  const double length = kLength / sections;
+  for (int k = 0; k < sections; ++k) {
+    const TPose2D anchor(length * k, 0, 0);
+    Matrix3d lever = Matrix3d::Identity();
+    lever(1, 2) = k + 1 < sections ? kLength - length * (k + 1) : 0;
+    const Matrix3d section = k + 1 < sections ? drift.over(length, anchor) : drift.overLast(length, anchor);
+    end += lever * section * lever.transpose();
+  }
+  return end;
+}
+
+TEST(SubmapDrift, SectionsMakeUpTheEndPose) {
   const Matrix3d usual = endOfRandomWalk();
-  SubmapDrift doubtful(100 * usual, kLength);
   const DriftRate rate = SubmapDrift(usual, kLength).rate();
-  doubtful.limit(rate);
-  EXPECT_NEAR(doubtful.rate().xy, rate.xy, 0.02 * rate.xy);
-  const Matrix3d whole = doubtful.overLast(kLength, {});
-  EXPECT_NEAR(whole(0, 0), 100 * usual(0, 0), 0.01 * usual(0, 0));
-  EXPECT_NEAR(whole(2, 2), 100 * usual(2, 2), 0.01 * usual(2, 2));
+  for (const double factor : {1.0, 4.0, 100.0}) {
+    SubmapDrift drift(factor * usual, kLength);
+    drift.limit(rate);
+    EXPECT_LE(drift.rate().xy, 1.001 * rate.xy);
+    const Matrix3d end = endOfSections(drift, 64), wanted = factor * usual;
+    // Across the way the bend in between comes on top, once: a quarter of the usual.
+    EXPECT_NEAR(end(0, 0), wanted(0, 0), 0.01 * wanted(0, 0));
+    EXPECT_NEAR(end(1, 1), wanted(1, 1), 0.3 * usual(1, 1));
+    EXPECT_NEAR(end(1, 2), wanted(1, 2), 0.03 * wanted(1, 2));
+    EXPECT_NEAR(end(2, 2), wanted(2, 2), 0.01 * wanted(2, 2));
+  }
 }
 
 TEST(SubmapDrift, KeepsToTheUsual) {
