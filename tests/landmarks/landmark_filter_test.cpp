@@ -170,6 +170,33 @@ TEST(RbpfFilter, TheMixtureOfParticlesAgreesWithBatchLeastSquares) {
   expectNear(*onlySubmap(mixtureOf(paramsOf("rbpf", "fastslam1")), drive), batch, 0.03, 3e-3);
 }
 
+TEST(RbpfFilter, ASingleMapIsTheMixtureOfParticles) {
+  const Drive drive = simulateDrive(gentle());
+  LandmarkMapperParams params = paramsOf("rbpf");
+  params.single_map = true;
+  EXPECT_EQ(onlySubmap(params, drive)->covariance, onlySubmap(mixtureOf(params), drive)->covariance);
+}
+
+/** After a measurement without noise, which least squares cannot weigh. */
+LandmarkEstimate estimateFromAnExactSensor(const LandmarkMapperParams& params) {
+  const auto filter = makeLandmarkFilter(params, 1);
+  MeasuredScan scan;
+  scan.T_robot_sensor = Pose::Zero();
+  scan.measurements.push_back({{{5, 0.2}, Eigen::Matrix2d::Zero()}, 7, 1});
+  filter->predict({{1, 0, 0}, Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal()});
+  filter->observe(scan);
+  return filter->estimate();
+}
+
+TEST(RbpfFilter, IsTheMixtureOfParticlesWhereSmoothingFails) {
+  const LandmarkEstimate estimate = estimateFromAnExactSensor(paramsOf("rbpf")),
+                         mixture = estimateFromAnExactSensor(mixtureOf(paramsOf("rbpf")));
+  ASSERT_EQ(estimate.features.size(), 1u);
+  EXPECT_TRUE(estimate.covariance.allFinite());
+  EXPECT_EQ(estimate.covariance, mixture.covariance);
+  EXPECT_EQ(estimate.pose, mixture.pose);
+}
+
 /** Squared error of the end pose in sigmas, per dimension, over seeds. */
 double meanNees(const LandmarkMapperParams& params, int runs) {
   double sum = 0;

@@ -48,6 +48,24 @@ TEST(PathSmoother, WhereTheRobotStandsMeasurementsAreAveraged) {
   EXPECT_NEAR(submap->covariance(3, 3), kVariance / 3, 1e-5);
 }
 
+/** A measurement that takes information away, as rounding may do where variances differ too much. */
+Sighting takingAway(Sighting sighting, double information) {
+  sighting.value.noise(0, 0) = -1 / information;
+  return sighting;
+}
+
+TEST(PathSmoother, FailsWhereTheInformationInTheEndIsNotPositive) {
+  EXPECT_FALSE(smoothSubmap({}, {takingAway(straightAhead(0, 5), 100)}, {Pose::Zero()}));
+}
+
+TEST(PathSmoother, FailsWhereThatOfAnEliminatedPoseIsNotPositive) {
+  // Of (x_1, x_2, feature) it is [−800 −100 1000; −100 100 0; 1000 0 −900]: without x_1 it looks positive,
+  // [112.5 −125; −125 350].
+  EXPECT_FALSE(smoothSubmap({ahead(1, kVariance), ahead(1, kVariance)},
+                            {straightAhead(0, 5), takingAway(straightAhead(1, 4), 1000)},
+                            {Pose::Zero(), Pose(1, 0, 0), Pose(2, 0, 0)}));
+}
+
 TEST(PathSmoother, FailsWhereAPoseIsNotANumber) {
   EXPECT_FALSE(smoothSubmap({ahead(1, kVariance)}, {straightAhead(0, 5)}, {Pose::Zero(), Pose(NAN, 0, 0)}));
 }

@@ -50,7 +50,8 @@ void describe(ParameterTable& table, LandmarkParticleParams& p) {
   table.add(
       "gaussian", p.gaussian,
       "How the submap is made of the particles: from their associations, with the path of each smoothed "
-      "by least squares, or from their paths, as many as there are particles",
+      "by least squares, or from their paths, as many as there are particles; always the latter with "
+      "single_map, as smoothing a whole log takes too long",
       {"smoothed", "particles"});
 }
 

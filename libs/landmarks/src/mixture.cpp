@@ -72,14 +72,6 @@ void dropRareFeatures(const std::vector<MixtureComponent>& components, double mo
   }
 }
 
-/** Rows of the pose and of the features with these indices. */
-std::vector<Index> rowsOf(const std::vector<std::size_t>& index) {
-  std::vector<Index> rows{0, 1, 2};
-  for (const std::size_t i : index)
-    for (const Index axis : {0, 1}) rows.push_back(3 + 2 * static_cast<Index>(i) + axis);
-  return rows;
-}
-
 /** Q_j times the weight is added. */
 void addCovariance(const MixtureComponent& component, const std::vector<std::size_t>& index, double weight,
                    MatrixXd& sum) {
@@ -113,6 +105,13 @@ double spreadCorrection(const std::vector<double>& weights) {
 }
 
 }  // namespace
+
+std::vector<Index> rowsOf(const std::vector<std::size_t>& features) {
+  std::vector<Index> rows{0, 1, 2};
+  for (const std::size_t i : features)
+    for (const Index axis : {0, 1}) rows.push_back(3 + 2 * static_cast<Index>(i) + axis);
+  return rows;
+}
 
 LandmarkEstimate toGaussian(const std::vector<MixtureComponent>& components, const MixtureOptions& options,
                             std::vector<std::size_t>& kept) {

@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace submap_slam::landmark_mapping {
 namespace {
@@ -18,6 +20,8 @@ using Eigen::VectorXd;
 const Vector3d kLeast(1e-10, 1e-10, 1e-12);
 constexpr double kCertain = 1e-12;
 
+constexpr double kFailed = std::numeric_limits<double>::quiet_NaN();
+
 Index row(std::size_t feature) { return 3 + 2 * static_cast<Index>(feature); }
 
 /** Normal equations of the present pose and of the features so far; only the lower triangle is kept. */
@@ -30,16 +34,17 @@ class Elimination {
   /** Moves all variables by one Gauss-Newton step. @return the largest change (m, rad); NaN if it failed */
   double iterate() {
     eliminate();
-    const VectorXd change = information_.selfadjointView<Eigen::Lower>().llt().solve(vector_);
+    llt_.compute(information_);
+    if (!definite_ || llt_.info() != Eigen::Success) return kFailed;
+    const VectorXd change = llt_.solve(vector_);
     for (std::size_t f = 0; f < submap_.features.size(); ++f)
       submap_.features[f] += change.segment<2>(row(f));
-    return std::max(change.cwiseAbs().maxCoeff(), movePath(change));
+    return movePath(change);
   }
 
-  /** Where it was linearised last. */
+  /** Where it was linearised last, if that did not fail. */
   MatrixXd covariance() const {
-    return information_.selfadjointView<Eigen::Lower>().llt().solve(
-        MatrixXd::Identity(information_.rows(), information_.rows()));
+    return llt_.solve(MatrixXd::Identity(information_.rows(), information_.rows()));
   }
 
  private:
@@ -56,7 +61,7 @@ class Elimination {
     eliminated_.clear();
     active_ = 3;
     information_.diagonal().head<3>().setConstant(1 / kCertain);
-    fixed_ = true;
+    fixed_ = definite_ = true;
     auto next = sightings_.begin();
     for (std::size_t k = 0; k < submap_.path.size(); ++k) {
       if (k > 0) move(k);
@@ -108,6 +113,7 @@ class Elimination {
         Matrix3d(own.selfadjointView<Eigen::Lower>()) + expected.by_a.transpose() * w * expected.by_a;
     const Vector3d vector = vector_.head<3>() + expected.by_a.transpose() * w * error;
     const Eigen::LLT<Matrix3d> llt(of_before);
+    definite_ = definite_ && llt.info() == Eigen::Success;
     eliminated_.push_back({llt.solve(coupling), llt.solve(vector)});
 
     setPose(w, error);
@@ -140,9 +146,11 @@ class Elimination {
     vector_.head<3>() += p.by_pose.transpose() * weighted;
   }
 
+  /** @return the largest change, also of the features; NaN if one is not finite */
   double movePath(VectorXd change) {
-    double largest = 0;
+    double largest = change.cwiseAbs().maxCoeff();
     for (std::size_t k = submap_.path.size(); k-- > 0;) {
+      if (!change.allFinite()) return kFailed;
       submap_.path[k] += change.head<3>();
       largest = std::max(largest, change.head<3>().cwiseAbs().maxCoeff());
       if (k == 0) break;
@@ -159,7 +167,9 @@ class Elimination {
   VectorXd vector_;
   std::vector<Eliminated> eliminated_;
   Index active_ = 3;
-  bool fixed_ = true;  ///< the present pose is the first one, or as certain
+  Eigen::LLT<MatrixXd> llt_;  ///< of the information
+  bool definite_ = true;      ///< that of all poses that were eliminated
+  bool fixed_ = true;         ///< the present pose is the first one, or as certain
 };
 
 /** Where the measurements put the features from the path, on average. */
@@ -186,7 +196,9 @@ std::optional<SmoothedSubmap> smoothSubmap(const std::vector<MotionStep>& steps,
   submap.path = std::move(path);
   Elimination elimination(steps, sightings, submap);
   for (int i = 0; i < kMostIterations; ++i) {
-    if (!(elimination.iterate() < kStands)) continue;
+    const double change = elimination.iterate();
+    if (std::isnan(change)) return std::nullopt;
+    if (change >= kStands) continue;
     submap.covariance = elimination.covariance();
     if (!submap.covariance.allFinite()) return std::nullopt;
     return submap;

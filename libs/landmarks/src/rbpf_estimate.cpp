@@ -65,7 +65,8 @@ RbpfFilter::Mixture RbpfFilter::mixtureOfParticles() const {
   return mixture;
 }
 
-/** Of the associations those with the most weight; usually one has nearly all of it. */
+/** Of the associations those with the most weight; usually one has nearly all of it. One that cannot be
+ * smoothed is left out. @return empty if that is the heaviest: the others do not stand for it */
 RbpfFilter::Mixture RbpfFilter::mixtureOfAssociations() const {
   struct Group {
     const Particle* heaviest = nullptr;
@@ -81,15 +82,18 @@ RbpfFilter::Mixture RbpfFilter::mixtureOfAssociations() const {
   std::stable_sort(groups.begin(), groups.end(),
                    [](const auto& a, const auto& b) { return a.second.weight > b.second.weight; });
   if (groups.size() > kMostAssociations) groups.resize(kMostAssociations);
-  double sum = 0;
-  for (const auto& [association, group] : groups) sum += group.weight;
   Mixture mixture;
-  for (const auto& [association, group] : groups)
-    addSmoothed(*group.heaviest, association, group.weight / sum, mixture);
+  for (const auto& [association, group] : groups) {
+    const bool added = addSmoothed(*group.heaviest, association, group.weight, mixture);
+    if (!added && mixture.components.empty()) return {};
+  }
+  double sum = 0;
+  for (const auto& component : mixture.components) sum += component.weight;
+  for (auto& component : mixture.components) component.weight /= sum;
   return mixture;
 }
 
-void RbpfFilter::addSmoothed(const Particle& particle, const std::vector<Seen>& association, double weight,
+bool RbpfFilter::addSmoothed(const Particle& particle, const std::vector<Seen>& association, double weight,
                              Mixture& mixture) const {
   std::vector<Sighting> sightings;
   std::map<uint32_t, std::size_t> index;
@@ -100,27 +104,28 @@ void RbpfFilter::addSmoothed(const Particle& particle, const std::vector<Seen>& 
                          index.emplace(seen.feature, index.size()).first->second});
   }
   const auto smoothed = smoothSubmap(steps_, sightings, pathOf(particle));
-  if (!smoothed) return;
+  if (!smoothed) return false;
   MixtureComponent component;
   component.weight = weight;
   component.pose = smoothed->path.back();
   component.features = featuresOf(particle);
-  std::vector<Eigen::Index> rows{0, 1, 2};
+  std::vector<std::size_t> order;
   for (Feature& feature : component.features) {
-    const std::size_t i = index.at(feature.id);
-    feature.mean = smoothed->features[i];
-    for (const Eigen::Index axis : {0, 1}) rows.push_back(3 + 2 * static_cast<Eigen::Index>(i) + axis);
+    order.push_back(index.at(feature.id));
+    feature.mean = smoothed->features[order.back()];
   }
+  const auto rows = rowsOf(order);
   component.covariance = smoothed->covariance(rows, rows);
   mixture.components.push_back(std::move(component));
   mixture.paths.push_back(smoothed->path);
+  return true;
 }
 
 LandmarkEstimate RbpfFilter::estimate() const {
   MixtureOptions options;
   options.min_hits = association_.min_hits;
   Mixture mixture;
-  if (smooths()) mixture = mixtureOfAssociations();
+  if (smooths_) mixture = mixtureOfAssociations();
   options.small_sample_correction = mixture.components.empty();
   if (mixture.components.empty()) mixture = mixtureOfParticles();
   std::vector<std::size_t> kept;

@@ -43,6 +43,7 @@ RbpfFilter::RbpfFilter(const LandmarkMapperParams& params, uint64_t seed)
     : association_(params.association),
       params_(params.particles),
       improved_proposal_(params.particles.proposal == "fastslam2"),
+      smooths_(params.particles.gaussian == "smoothed" && !params.single_map),
       random_(seed),
       particles_(static_cast<std::size_t>(params.particles.particles)) {
   nodes_.push_back({Pose::Zero(), 0, {}});  // the first node of no particle
@@ -54,7 +55,7 @@ RbpfFilter::RbpfFilter(const LandmarkMapperParams& params, uint64_t seed)
 }
 
 void RbpfFilter::predict(const MotionStep& step) {
-  if (smooths()) steps_.push_back(step);
+  if (smooths_) steps_.push_back(step);
   for (auto& particle : particles_) {
     const Composition moved = compose(particle.pose, step.increment);
     particle.pose = moved.pose;
@@ -66,7 +67,7 @@ void RbpfFilter::predict(const MotionStep& step) {
 }
 
 void RbpfFilter::observe(const MeasuredScan& scan) {
-  if (smooths()) scans_.push_back({steps_.size(), scan});
+  if (smooths_) scans_.push_back({steps_.size(), scan});
   for (auto& particle : particles_) observe(particle, scan);
   normalise();
   depleted_ = effective() < params_.resample_below * static_cast<double>(particles_.size());
@@ -98,7 +99,7 @@ void RbpfFilter::observe(Particle& particle, const MeasuredScan& scan) {
 }
 
 void RbpfFilter::note(const Particle& particle, std::size_t measurement, uint32_t feature) {
-  if (smooths()) nodes_[particle.path].seen.push_back({scans_.size() - 1, measurement, feature});
+  if (smooths_) nodes_[particle.path].seen.push_back({scans_.size() - 1, measurement, feature});
 }
 
 /** Features that the scan may see, and those that it names. */

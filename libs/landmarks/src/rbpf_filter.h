@@ -21,8 +21,10 @@ namespace submap_slam::landmark_mapping {
  *
  * A few dozen particles say well which measurement is of which feature, but not how certain the path is:
  * drawn anew, they soon have their first poses in common, and nothing that comes later corrects these. For
- * the estimate particles therefore stand for their associations alone, unless the parameters ask for the
- * paper's mixture: given the association, path and features are smoothed by least squares.
+ * the estimate particles therefore stand for their associations alone: given the association, path and
+ * features are smoothed by least squares. The estimate is the paper's mixture of particles where the
+ * parameters ask for it, in a single map of the whole log, and where smoothing the heaviest association
+ * fails.
  */
 class RbpfFilter : public LandmarkFilter {
  public:
@@ -87,15 +89,15 @@ class RbpfFilter : public LandmarkFilter {
   std::vector<Seen> associationOf(const Particle& particle) const;
   Mixture mixtureOfParticles() const;
   Mixture mixtureOfAssociations() const;
-  void addSmoothed(const Particle& particle, const std::vector<Seen>& association, double weight,
+  bool addSmoothed(const Particle& particle, const std::vector<Seen>& association, double weight,
                    Mixture& mixture) const;
-  bool smooths() const { return params_.gaussian == "smoothed"; }
   void note(const Particle& particle, std::size_t measurement, uint32_t feature);
   const Particle& best() const;
 
   LandmarkAssociationParams association_;
   LandmarkParticleParams params_;
   bool improved_proposal_;
+  bool smooths_;  ///< not a whole log: what that takes has no bound
   std::mt19937_64 random_;
   std::vector<Particle> particles_;
   std::vector<PathNode> nodes_;

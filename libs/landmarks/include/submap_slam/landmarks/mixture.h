@@ -3,6 +3,7 @@
 #include <submap_slam/landmarks/feature_map.h>
 #include <submap_slam/landmarks/landmark_filter.h>
 
+#include <cstddef>
 #include <vector>
 
 namespace submap_slam::landmark_mapping {
@@ -30,6 +31,9 @@ struct MixtureOptions {
    * Σw² = 1/n the spread is multiplied by (1 + 1/n) / (1 − 1/n). */
   bool small_sample_correction = true;
 };
+
+/** Rows of the pose and of the features with these indices, in a state (x, y, φ, x_1, y_1, …). */
+std::vector<Eigen::Index> rowsOf(const std::vector<std::size_t>& features);
 
 /** The mixture as one Gaussian with the same moments (Combined SLAM (7), (8)):
  *

@@ -29,7 +29,7 @@ struct SmoothedSubmap {
  * @param steps the k-th leads from path[k] to path[k + 1]
  * @param sightings in the order of their steps
  * @param path where to begin
- * @return empty if it does not converge */
+ * @return empty if it does not converge, or if the information is not positive definite */
 std::optional<SmoothedSubmap> smoothSubmap(const std::vector<MotionStep>& steps,
                                            const std::vector<Sighting>& sightings, std::vector<Pose> path);
 
