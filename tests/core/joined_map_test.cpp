@@ -266,8 +266,10 @@ TEST(FuseEvidence, AMapWithSeveralTilesHasNoSeam) {
     for (int x = 0; x < 20; ++x) set(*far, -0.95 + 0.1 * x, -0.95 + 0.1 * y, value(x, y), 2);
   // The first tile ends 1024 cells from the left edge of the map, in the middle of the far submap.
   const TPose2D frame(101.3, 0, 0);
-  const EvidenceGrid map = fuseEvidence({here, far}, {gaussian({0, 0, 0}), gaussian(frame)}, 0.1).unpacked();
+  const PackedEvidence fused = fuseEvidence({here, far}, {gaussian({0, 0, 0}), gaussian(frame)}, 0.1);
+  const EvidenceGrid map = fused.unpacked();
   EXPECT_EQ(map.observedCells(), 401u);
+  EXPECT_EQ(fused.bytes(), PackedEvidence(map).bytes());  // nothing for blocks that nobody saw
   for (int y = 0; y < 20; ++y)
     for (int x = 0; x < 20; ++x)
       EXPECT_NEAR(logOddsAt(map, frame.x - 0.95 + 0.1 * x, -0.95 + 0.1 * y), value(x, y), 1e-3);

@@ -72,6 +72,11 @@ TEST(MapFromScans, ASubmapAtTheOriginIsItsOwnMap) {
   EXPECT_EQ(map.cropped().cells(), map.cells());
 }
 
+TEST(MapFromScans, TakesNoMemoryForBlocksThatNobodySaw) {
+  const auto map = mapFromScans({roomSubmaps().front()}, oneSubmapAt({0, 0, 0.41}), {}, 0).value();
+  EXPECT_EQ(map.bytes(), PackedEvidence(map.unpacked()).bytes());
+}
+
 TEST(MapFromScans, LosesNoWallsWhereTheSubmapIsTurned) {
   // The truth are the same beams drawn from poses that are turned and shifted, without any submap.
   const GridSubmaps one{roomSubmaps().front()};

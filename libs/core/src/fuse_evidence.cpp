@@ -1,4 +1,6 @@
 #include <submap_slam/core/joined_map.h>
+
+#include <malloc.h>
 #include <submap_slam/core/map_resolution.h>
 #include <tbb/parallel_for.h>
 
@@ -185,7 +187,7 @@ class FusionTile {
       for (int cx = 0; cx < width_; ++cx, ++s)
         if (s->n >= kLeastHits)
           evidence.set(cx, cy, static_cast<float>(s->n * s->nl / s->nn), static_cast<float>(s->n));
-    return evidence;
+    return PackedEvidence(evidence);  // without the room for blocks that nobody saw
   }
 
  private:
@@ -234,7 +236,8 @@ PackedEvidence assembled(const MapLattice& map, std::vector<FusedTile> tiles) {
       whole.set(tile.column + cx - left, tile.row + cy - low, log_odds, hits);
     });
   }
-  return whole;
+  malloc_trim(0);  // the tiles left holes in the heap, and the cells are about to be there twice
+  return PackedEvidence(whole);  // without the room for blocks that nobody saw
 }
 
 /** The submaps that saw something. */

@@ -29,7 +29,7 @@ PackedEvidence::PackedEvidence(const EvidenceLayer& along_x, const EvidenceLayer
 PackedEvidence::PackedEvidence(double x_min, double x_max, double y_min, double y_max, double resolution)
     : PackedEvidence(EvidenceGrid(x_min, x_max, 0, resolution, resolution).hits,
                      EvidenceGrid(0, resolution, y_min, y_max, resolution).hits) {
-  cells_.reserve(numbers_.size());  // address space alone: what is never written to takes no memory
+  cells_.reserve(numbers_.size());  // room that a copy of the grid does not have
 }
 
 PackedEvidence::PackedEvidence(const EvidenceGrid& grid) : PackedEvidence(grid.hits, grid.hits) {

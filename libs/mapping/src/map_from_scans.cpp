@@ -1,7 +1,8 @@
+#include <submap_slam/mapping/map_from_scans.h>
+
 #include <malloc.h>
 #include <submap_slam/core/map_resolution.h>
 #include <submap_slam/mapping/evidence_renderer.h>
-#include <submap_slam/mapping/map_from_scans.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>

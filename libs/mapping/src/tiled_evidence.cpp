@@ -53,7 +53,7 @@ PackedEvidence TiledEvidence::take(double resolution) {
                           limit(extent.high + 1), resolution);
   for (auto tile = tiles_.begin(); tile != tiles_.end(); tile = tiles_.erase(tile))
     copy(tile->first, *tile->second, extent, evidence);
-  return evidence;
+  return PackedEvidence(evidence);  // without the room for blocks that nobody saw
 }
 
 }  // namespace submap_slam

@@ -10,26 +10,26 @@ namespace submap_slam {
 BinaryFile::BinaryFile(const std::string& file) : file_(file) {
   errno = 0;
   out_.open(file, std::ios::binary);
-  noteFailure();
+  check();
 }
 
 void BinaryFile::write(const char* bytes, std::size_t size) {
   errno = 0;
   out_.write(bytes, static_cast<std::streamsize>(size));
-  noteFailure();
+  check();
 }
 
 void BinaryFile::close() {
   errno = 0;
-  if (out_) out_.close();  // a full disk may show only now
-  noteFailure();
-  if (!out_)
-    throw OutputError(file_ +
-                      ": cannot be written: " + (error_ != 0 ? std::strerror(error_) : "unknown reason"));
+  out_.close();  // a full disk may show only now
+  check();
 }
 
-void BinaryFile::noteFailure() {
-  if (!out_ && error_ == 0) error_ = errno;
+void BinaryFile::check() {
+  if (out_) return;
+  if (error_ == 0) error_ = errno;
+  throw OutputError(file_ +
+                    ": cannot be written: " + (error_ != 0 ? std::strerror(error_) : "unknown reason"));
 }
 
 void writeBytes(const std::string& file, const std::string& bytes) {

@@ -34,6 +34,9 @@ class GzipFile : public mrpt::io::CStream {
     out_.close();
   }
 
+  /** As BinaryFile::check. */
+  void check() { out_.check(); }
+
   uint64_t getTotalBytesCount() const override { return position_; }
   uint64_t getPosition() const override { return position_; }
   std::size_t Read(void*, std::size_t) override { throw std::logic_error("GzipFile: is only written"); }
@@ -57,7 +60,12 @@ class GzipFile : public mrpt::io::CStream {
 
 void writeGzippedArchive(const std::string& file, const mrpt::serialization::CSerializable& object) {
   GzipFile out(file);
-  mrpt::serialization::archiveFrom(out) << object;
+  try {
+    mrpt::serialization::archiveFrom(out) << object;
+  } catch (...) {
+    out.check();  // MRPT throws another error in place of that of the file
+    throw;
+  }
   out.close();
 }
 

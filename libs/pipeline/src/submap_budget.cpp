@@ -22,14 +22,34 @@ double resident_bytes() {
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
+/** Gives back the holes that submaps leave in the heap, where nearly all memory is resident and a worthwhile
+ * part of it came after the last time. */
+class HeapTrim {
+ public:
+  explicit HeapTrim(double memory_bytes) : memory_(memory_bytes) {}
+
+  void operator()() {
+    constexpr double kNearlyAll = 0.9, kWorthwhile = 0.05;  // shares of the memory
+    const double resident = resident_bytes();
+    left_ = std::min(left_, resident);
+    if (resident < kNearlyAll * memory_ || resident < left_ + kWorthwhile * memory_) return;
+    malloc_trim(0);
+    left_ = resident_bytes();
+  }
+
+ private:
+  double memory_;
+  double left_ = 0;  ///< the least that was resident since the last time (bytes)
+};
+
 }  // namespace
 
 SubmapStore::Budget submapBudget(double memory_MB) {
   constexpr unsigned kAskedRarely = 8;  // glibc walks over all its free chunks to answer
-  constexpr double kNearlyAll = 0.9;
-  return [memory = 1e6 * memory_MB, calls = 0u, others = 0.0](std::size_t kept_bytes) mutable {
+  return [memory = 1e6 * memory_MB, calls = 0u, others = 0.0,
+          trim = HeapTrim(1e6 * memory_MB)](std::size_t kept_bytes) mutable {
     if (calls++ % kAskedRarely == 0) {
-      if (resident_bytes() > kNearlyAll * memory) malloc_trim(0);  // submaps leave holes in the heap
+      trim();
       others = heapInUse_bytes() - static_cast<double>(kept_bytes);
     }
     return static_cast<std::size_t>(std::max(0.0, memory - 1e6 * kLeastMemory_MB - others));
