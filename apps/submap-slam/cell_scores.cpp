@@ -21,8 +21,7 @@ std::vector<PosePair> pairsOf(const TimedTrajectory& estimate, const TimedTrajec
 }
 
 std::optional<TPose2D> poseAt(const TimedTrajectory& trajectory, const Frame& frame) {
-  constexpr double kTolerance_s = 1e-3, kMaxGap_s = 5;
-  const auto pose = trajectory.at(mrpt::Clock::toDouble(frame.stamp), kTolerance_s, kMaxGap_s);
+  const auto pose = trajectory.at(mrpt::Clock::toDouble(frame.stamp));
   if (!pose) return {};
   return toPose2D(*pose);
 }

@@ -28,6 +28,7 @@ const std::vector<ExperimentColumn>& experimentColumns() {
       {"final_m", "final position, m", 3},
       {"ci_frames", "CI of poses", 3},
       {"nees_frames", "NEES of poses", 3},
+      {"nees_local", "local NEES/dim", 3},
       {"landmark_rmse_m", "landmarks RMSE, m", 3},
       {"ci_landmarks", "CI of landmarks", 3},
       {"nees_landmarks", "NEES of landmarks", 3},

@@ -4,8 +4,11 @@
 #include <submap_slam/core/errors.h>
 #include <submap_slam/eval/gps_error.h>
 #include <submap_slam/eval/landmark_errors.h>
+#include <submap_slam/eval/submap_nees.h>
 #include <submap_slam/eval/trajectory_error.h>
 #include <submap_slam/output/text_file.h>
+#include <submap_slam/pipeline/run_files.h>
+#include <submap_slam/rawlog/landmark_log.h>
 
 #include <vector>
 
@@ -34,14 +37,18 @@ void addLandmarkScores(Metrics& scores, const OutputDirectory& out, const TimedT
   addFrameScores(scores, frames);
   writeText(out.file("consistency.csv"), frameErrorsCsv(frames));
   if (true_landmarks.empty()) return;
-  const LandmarkErrors errors = landmarkErrors(readMappedLandmarks(out.file("landmarks.csv")),
-                                               readLandmarkTruth(true_landmarks), T_truth_map);
+  const LandmarkTruth landmarks = readLandmarkTruth(true_landmarks);
+  const LandmarkErrors errors =
+      landmarkErrors(readMappedLandmarks(out.file("landmarks.csv")), landmarks, T_truth_map);
   if (errors.compared == 0)
     throw InputError(fmt::format("{}: holds none of the mapped landmarks", true_landmarks));
   scores["landmark_rmse_m"] = errors.rmse_m;
   scores["ci_landmarks"] = errors.mean_index;
   scores["nees_landmarks"] = errors.mean_nees;
   scores["landmarks_compared"] = errors.compared;
+  const SubmapNees nees =
+      meanNeesPerDimension(readLandmarkSubmaps(out.file(kLandmarkFile)), landmarks, truth);
+  if (nees.used > 0) scores["nees_local"] = nees.mean;
 }
 
 void addGpsScores(Metrics& scores, const TimedTrajectory& estimate, const std::string& gps_file,

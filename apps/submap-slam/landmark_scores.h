@@ -11,9 +11,10 @@
 namespace submap_slam {
 
 /** Adds ci_frames and nees_frames, means over the poses where submaps end, and writes consistency.csv with
- * each of them; where true landmarks are given, landmark_rmse_m, ci_landmarks, nees_landmarks and
- * landmarks_compared. The first pose of the estimate is taken to be the true one.
- * @param out             folder of a result with frames.csv and landmarks.csv
+ * each of them; where true landmarks are given, landmark_rmse_m, ci_landmarks, nees_landmarks,
+ * landmarks_compared and nees_local, the mean over submaps of their NEES per dimension. The first pose of the
+ * estimate is taken to be the true one.
+ * @param out             folder of a result with frames.csv, landmarks.csv and landmark_submaps.rawlog
  * @param true_landmarks  file with their true places, or empty */
 void addLandmarkScores(Metrics& scores, const OutputDirectory& out, const TimedTrajectory& estimate,
                        const TimedTrajectory& truth, const std::string& true_landmarks);

@@ -114,10 +114,9 @@ std::vector<TimedFrame> readTimedFrames(const std::string& file) {
 
 std::vector<FrameError> frameErrors(const std::vector<TimedFrame>& frames, const TimedTrajectory& truth,
                                     const TPose2D& T_truth_map) {
-  constexpr double kTolerance_s = 1e-3, kMaxGap_s = 5;
   std::vector<FrameError> errors;
   for (const TimedFrame& frame : frames) {
-    const auto T_truth_frame = truth.at(frame.t, kTolerance_s, kMaxGap_s);
+    const auto T_truth_frame = truth.at(frame.t);
     if (!T_truth_frame) continue;
     const TPose2D wanted = toPose2D(*T_truth_frame) - T_truth_map;
     const auto distance2 = nees(frame.pose, wanted);

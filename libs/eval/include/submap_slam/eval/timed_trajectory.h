@@ -49,7 +49,7 @@ class TimedTrajectory {
   /** The pose at time t (s): the nearest one if it is within `tolerance` s, else interpolated (slerp for the
    * rotation) between its two neighbours if these are at most `max_gap` s apart; nothing before the first and
    * after the last pose. */
-  std::optional<Pose3D> at(double t, double tolerance, double max_gap) const;
+  std::optional<Pose3D> at(double t, double tolerance = 1e-3, double max_gap = 5) const;
 
  private:
   std::vector<TimedPose> poses_;
