@@ -40,7 +40,7 @@ TEST(FeatureMap, CopiesShareAllButTheTileThatChanged) {
   FeatureMap copy = map;
   const auto near = copy.around({0, 0}, 1).front(), far = copy.around({100, 0}, 1).front();
   EXPECT_TRUE(copy.sharesTile(map, near) && copy.sharesTile(map, far));
-  copy.replace({{near, featureAt(0.1, 0, 1)}});
+  copy.update({{near, featureAt(0.1, 0, 1)}});
   EXPECT_FALSE(copy.sharesTile(map, copy.around({0, 0}, 1).front()));
   EXPECT_TRUE(copy.sharesTile(map, copy.around({100, 0}, 1).front()));
   EXPECT_EQ(map.at(map.around({0, 0}, 1).front()).mean.x(), 0) << "the original is untouched";
@@ -48,7 +48,7 @@ TEST(FeatureMap, CopiesShareAllButTheTileThatChanged) {
 
 TEST(FeatureMap, AFeatureThatMovesToAnotherTileIsFoundThere) {
   FeatureMap map = sample();
-  map.replace({{map.around({0, 0}, 1).front(), featureAt(40, 40, 1)}});
+  map.update({{map.around({0, 0}, 1).front(), featureAt(40, 40, 1)}});
   EXPECT_THAT(idsOf(map, map.around({40, 40}, 1)), UnorderedElementsAre(1u));
   EXPECT_THAT(idsOf(map, map.around({0, 0}, 5)), UnorderedElementsAre(3u));
   EXPECT_EQ(map.size(), 3u);
@@ -62,9 +62,22 @@ TEST(FeatureMap, WhatNothingSpeaksForIsRemoved) {
   ASSERT_EQ(places.size(), 2u);
   std::vector<std::pair<FeatureMap::Place, Feature>> changes;
   for (const auto& place : places) changes.emplace_back(place, map.at(place).id == 1 ? gone : stays);
-  map.replace(changes);
+  map.update(changes);
   EXPECT_THAT(idsOf(map, map.all()), UnorderedElementsAre(2u, 3u));
   EXPECT_EQ(map.size(), 2u);
+}
+
+TEST(FeatureMap, WhatIsMissedLosesEvidenceAndGoesWhenNoneIsLeft) {
+  FeatureMap map = sample();
+  Feature certain = featureAt(0, 0, 1);
+  certain.evidence = 0.5;
+  const auto places = map.around({0, 0}, 6);
+  ASSERT_EQ(places.size(), 2u);
+  const std::size_t first = map.at(places[0]).id == 1 ? 0 : 1;
+  map.update({{places[first], certain}});
+  map.update({}, places, 0.3);
+  ASSERT_THAT(idsOf(map, map.all()), UnorderedElementsAre(1u, 2u)) << "3 had none";
+  EXPECT_DOUBLE_EQ(map.at(map.around({0, 0}, 1).front()).evidence, 0.2);
 }
 
 }  // namespace

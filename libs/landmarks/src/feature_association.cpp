@@ -3,12 +3,14 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace submap_slam::landmark_mapping {
 
 std::vector<Origin> assign(std::size_t measurements, std::vector<Pairing> pairings, double match_gate) {
-  std::stable_sort(pairings.begin(), pairings.end(),
-                   [](const Pairing& a, const Pairing& b) { return a.distance2 < b.distance2; });
+  std::sort(pairings.begin(), pairings.end(), [](const Pairing& a, const Pairing& b) {
+    return std::tie(a.distance2, a.measurement, a.feature) < std::tie(b.distance2, b.measurement, b.feature);
+  });
   std::vector<Origin> origins(measurements);
   std::vector<std::size_t> taken;
   for (const Pairing& p : pairings) {
@@ -22,9 +24,10 @@ std::vector<Origin> assign(std::size_t measurements, std::vector<Pairing> pairin
   return origins;
 }
 
+double squaredDistance(const Eigen::Vector2d& v, const Eigen::Matrix2d& s) { return v.dot(s.inverse() * v); }
+
 Innovation measure(const Eigen::Vector2d& v, const Eigen::Matrix2d& s) {
-  const double det = s.determinant();
-  return {v.dot(s.inverse() * v), std::log(4 * M_PI * M_PI * det)};
+  return {squaredDistance(v, s), std::log(4 * M_PI * M_PI * s.determinant())};
 }
 
 }  // namespace submap_slam::landmark_mapping

@@ -57,7 +57,8 @@ void FeatureMap::insert(const Feature& feature) {
   ++size_;
 }
 
-void FeatureMap::replace(const std::vector<std::pair<Place, Feature>>& changes) {
+void FeatureMap::update(const std::vector<std::pair<Place, Feature>>& changes,
+                        const std::vector<Place>& missed, double lost_evidence) {
   std::vector<Place> leaving;
   std::vector<Feature> moved;
   for (const auto& [place, feature] : changes) {
@@ -68,6 +69,11 @@ void FeatureMap::replace(const std::vector<std::pair<Place, Feature>>& changes) 
     }
     leaving.push_back(place);
     if (!gone) moved.push_back(feature);
+  }
+  for (const Place& place : missed) {
+    Feature& feature = writable(tiles_[place.tile])[place.index];
+    feature.evidence -= lost_evidence;
+    if (feature.evidence < 0) leaving.push_back(place);
   }
   std::sort(leaving.begin(), leaving.end(), [](const Place& a, const Place& b) {
     return std::make_pair(a.tile, a.index) > std::make_pair(b.tile, b.index);

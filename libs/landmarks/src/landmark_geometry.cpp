@@ -12,6 +12,7 @@ constexpr double kLeastRange = 1e-3;
 }  // namespace
 
 double wrapped(double angle) {
+  if (angle > -M_PI && angle <= M_PI) return angle;  // nearly always, and a remainder takes its time
   angle = std::remainder(angle, 2 * M_PI);
   return angle <= -M_PI ? M_PI : angle;
 }
@@ -29,7 +30,10 @@ Composition compose(const Pose& a, const Pose& b) {
 }
 
 Predicted predictMeasurement(const Pose& robot, const Pose& T_robot_sensor, const Point& feature) {
-  const Composition sensor = compose(robot, T_robot_sensor);
+  return predictMeasurement(compose(robot, T_robot_sensor), feature);
+}
+
+Predicted predictMeasurement(const Composition& sensor, const Point& feature) {
   const Point d = feature - sensor.pose.head<2>();
   const double r = std::max(d.norm(), kLeastRange);
   Predicted out;
@@ -42,7 +46,10 @@ Predicted predictMeasurement(const Pose& robot, const Pose& T_robot_sensor, cons
 }
 
 Located locate(const Pose& robot, const Pose& T_robot_sensor, const Eigen::Vector2d& z) {
-  const Composition sensor = compose(robot, T_robot_sensor);
+  return locate(compose(robot, T_robot_sensor), z);
+}
+
+Located locate(const Composition& sensor, const Eigen::Vector2d& z) {
   const double angle = sensor.pose[2] + z[1], c = std::cos(angle), s = std::sin(angle);
   const Point ray(z[0] * c, z[0] * s), turned(-ray.y(), ray.x());
   Located out;

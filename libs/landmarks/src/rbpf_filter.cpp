@@ -17,13 +17,10 @@ Eigen::Matrix2d givenPose(const Predicted& predicted, const Feature& feature, co
   return predicted.by_feature * feature.covariance * predicted.by_feature.transpose() + noise;
 }
 
-/** No pairing farther apart than the root of this can be within `gate`: an upper bound of the covariance of a
- * located measurement. */
-double reach2(double range, const Eigen::Matrix2d& noise, const Eigen::Matrix3d& pose, double feature_trace,
-              double gate) {
-  const double r2 = range * range;
-  return gate * 1.5 *
-         (noise(0, 0) + r2 * noise(1, 1) + feature_trace + pose(0, 0) + pose(1, 1) + r2 * pose(2, 2));
+/** Upper bound of the variance of a located measurement, that of the feature left out (m²). */
+double spread2(const RangeBearing& value, const Eigen::Matrix3d& pose) {
+  const double r2 = value.z[0] * value.z[0];
+  return value.noise(0, 0) + r2 * value.noise(1, 1) + pose(0, 0) + pose(1, 1) + r2 * pose(2, 2);
 }
 
 /** Log-likelihood of a measurement that no feature explains: as that of one at the gate. */
@@ -31,11 +28,28 @@ double unexplained(const Eigen::Matrix2d& noise, double gate) {
   return -0.5 * (gate + std::log(4 * M_PI * M_PI * noise.determinant()));
 }
 
-bool looksAt(const MeasuredScan& scan, const Predicted& predicted) {
-  constexpr double kShare = 0.9;  // at the borders of its view a sensor may miss a feature
-  return scan.max_range > 0 && scan.field_of_view > 0 && predicted.z[0] <= kShare * scan.max_range &&
-         std::abs(predicted.z[1]) <= kShare * scan.field_of_view / 2;
-}
+/** Where a sensor should see a feature, if the scan says how far and how wide it looks. */
+class View {
+ public:
+  View(const MeasuredScan& scan, const Pose& sensor)
+      : known_(scan.max_range > 0 && scan.field_of_view > 0),
+        range_(kShare * scan.max_range),
+        least_cosine_(std::cos(std::min(kShare * scan.field_of_view / 2, M_PI))),
+        position_(sensor.head<2>()),
+        ahead_(std::cos(sensor[2]), std::sin(sensor[2])) {}
+
+  bool contains(const Point& feature) const {
+    const Point d = feature - position_;
+    const double distance = d.norm();
+    return known_ && distance <= range_ && ahead_.dot(d) >= least_cosine_ * distance;
+  }
+
+ private:
+  static constexpr double kShare = 0.9;  ///< at the borders of its view a sensor may miss a feature
+  bool known_;
+  double range_, least_cosine_;
+  Point position_, ahead_;
+};
 
 }  // namespace
 
@@ -76,8 +90,9 @@ void RbpfFilter::observe(const MeasuredScan& scan) {
 
 void RbpfFilter::observe(Particle& particle, const MeasuredScan& scan) {
   if (!scan.measurements.empty() && !improved_proposal_) samplePose(particle);
-  const auto places = visible(particle, scan);
-  const auto origins = associate(particle, scan, places);
+  const Composition expected = compose(particle.pose, scan.T_robot_sensor);
+  const auto places = visible(particle, scan, expected);
+  const auto origins = associate(particle, scan, expected, places);
   std::vector<Match> matches;
   for (std::size_t m = 0; m < origins.size(); ++m) {
     if (origins[m].kind == Origin::Kind::kFeature) {
@@ -94,8 +109,9 @@ void RbpfFilter::observe(Particle& particle, const MeasuredScan& scan) {
     weigh(particle, scan, matches);
   }
   nodes_[particle.path].pose = particle.pose;
-  updateFeatures(particle, scan, matches, places);
-  addNew(particle, scan, origins);
+  const Composition sensor = compose(particle.pose, scan.T_robot_sensor);
+  updateFeatures(particle, scan, sensor, matches, places);
+  addNew(particle, scan, sensor, origins);
 }
 
 void RbpfFilter::note(const Particle& particle, std::size_t measurement, uint32_t feature) {
@@ -103,12 +119,12 @@ void RbpfFilter::note(const Particle& particle, std::size_t measurement, uint32_
 }
 
 /** Features that the scan may see, and those that it names. */
-std::vector<Place> RbpfFilter::visible(const Particle& particle, const MeasuredScan& scan) const {
-  const Pose sensor = compose(particle.pose, scan.T_robot_sensor).pose;
+std::vector<Place> RbpfFilter::visible(const Particle& particle, const MeasuredScan& scan,
+                                       const Composition& sensor) const {
   double range = scan.max_range;
   for (const auto& m : scan.measurements) range = std::max(range, m.value.z[0]);
   constexpr double kMargin = 10;  // m
-  auto places = particle.features.around(sensor.head<2>(), range + kMargin);
+  auto places = particle.features.around(sensor.pose.head<2>(), range + kMargin);
   const auto named = [&](const Measurement& m) {
     return !m.known_id || std::any_of(places.begin(), places.end(), [&](const Place& place) {
       return particle.features.at(place).id == *m.known_id;
@@ -120,25 +136,25 @@ std::vector<Place> RbpfFilter::visible(const Particle& particle, const MeasuredS
 }
 
 std::vector<Origin> RbpfFilter::associate(const Particle& particle, const MeasuredScan& scan,
-                                          const std::vector<Place>& places) const {
+                                          const Composition& sensor, const std::vector<Place>& places) const {
   std::vector<Pairing> pairings;
   for (std::size_t m = 0; m < scan.measurements.size(); ++m) {
     const Measurement& measurement = scan.measurements[m];
     const RangeBearing& value = measurement.value;
-    const Point located = locate(particle.pose, scan.T_robot_sensor, value.z).feature;
+    const Point located = locate(sensor, value.z).feature;
+    const double spread = spread2(value, particle.covariance);
     for (std::size_t f = 0; f < places.size(); ++f) {
       const Feature& feature = particle.features.at(places[f]);
       if (measurement.known_id) {
         if (feature.known && feature.id == *measurement.known_id) pairings.push_back({m, f, 0});
         continue;
       }
-      if ((feature.mean - located).squaredNorm() > reach2(value.z[0], value.noise, particle.covariance,
-                                                          feature.covariance.trace(), association_.new_gate))
-        continue;
-      const Predicted p = predictMeasurement(particle.pose, scan.T_robot_sensor, feature.mean);
+      const double reach2 = association_.new_gate * 1.5 * (spread + feature.covariance.trace());
+      if ((feature.mean - located).squaredNorm() > reach2) continue;
+      const Predicted p = predictMeasurement(sensor, feature.mean);
       const Eigen::Matrix2d s =
           p.by_pose * particle.covariance * p.by_pose.transpose() + givenPose(p, feature, value.noise);
-      const double distance2 = measure(innovationOf(value.z, p.z), s).distance2;
+      const double distance2 = squaredDistance(innovationOf(value.z, p.z), s);
       if (distance2 <= association_.new_gate) pairings.push_back({m, f, distance2});
     }
   }
@@ -190,13 +206,14 @@ void RbpfFilter::weigh(Particle& particle, const MeasuredScan& scan,
 
 /** Kalman update of each matched feature; evidence for these, and against those that should have been seen.
  */
-void RbpfFilter::updateFeatures(Particle& particle, const MeasuredScan& scan,
+void RbpfFilter::updateFeatures(Particle& particle, const MeasuredScan& scan, const Composition& sensor,
                                 const std::vector<Match>& matches, const std::vector<Place>& places) const {
   std::vector<std::pair<Place, Feature>> changes;
+  changes.reserve(matches.size());
   for (const Match& match : matches) {
     Feature feature = particle.features.at(match.place);
     const RangeBearing& value = scan.measurements[match.measurement].value;
-    const Predicted p = predictMeasurement(particle.pose, scan.T_robot_sensor, feature.mean);
+    const Predicted p = predictMeasurement(sensor, feature.mean);
     const Eigen::Matrix2d p_ht = feature.covariance * p.by_feature.transpose();
     const Eigen::Matrix2d gain = p_ht * givenPose(p, feature, value.noise).inverse();
     feature.mean += gain * innovationOf(value.z, p.z);
@@ -206,26 +223,31 @@ void RbpfFilter::updateFeatures(Particle& particle, const MeasuredScan& scan,
     ++feature.hits;
     changes.emplace_back(match.place, feature);
   }
-  const std::size_t seen = changes.size();
-  for (const Place& place : places) {
-    const Feature& feature = particle.features.at(place);
-    const auto is_here = [&place](const auto& change) {
-      return change.first.tile == place.tile && change.first.index == place.index;
-    };
-    const auto end = changes.begin() + static_cast<std::ptrdiff_t>(seen);
-    if (feature.known || params_.missed == 0 || std::any_of(changes.begin(), end, is_here)) continue;
-    if (!looksAt(scan, predictMeasurement(particle.pose, scan.T_robot_sensor, feature.mean))) continue;
-    changes.emplace_back(place, feature);
-    changes.back().second.evidence -= params_.missed;
-  }
-  particle.features.replace(changes);
+  particle.features.update(changes, missed(particle, scan, sensor, matches, places), params_.missed);
 }
 
-void RbpfFilter::addNew(Particle& particle, const MeasuredScan& scan, const std::vector<Origin>& origins) {
+/** Features that the sensor should have seen and did not. */
+std::vector<Place> RbpfFilter::missed(const Particle& particle, const MeasuredScan& scan,
+                                      const Composition& sensor, const std::vector<Match>& matches,
+                                      const std::vector<Place>& places) const {
+  std::vector<Place> missed;
+  if (params_.missed == 0) return missed;
+  const View view(scan, sensor.pose);
+  for (const Place& place : places) {
+    const Feature& feature = particle.features.at(place);
+    if (feature.known || !view.contains(feature.mean)) continue;
+    const auto is_here = [&place](const Match& match) { return match.place == place; };
+    if (std::none_of(matches.begin(), matches.end(), is_here)) missed.push_back(place);
+  }
+  return missed;
+}
+
+void RbpfFilter::addNew(Particle& particle, const MeasuredScan& scan, const Composition& sensor,
+                        const std::vector<Origin>& origins) {
   for (std::size_t m = 0; m < origins.size(); ++m) {
     if (origins[m].kind != Origin::Kind::kNew) continue;
     const Measurement& measurement = scan.measurements[m];
-    const Located located = locate(particle.pose, scan.T_robot_sensor, measurement.value.z);
+    const Located located = locate(sensor, measurement.value.z);
     Feature feature;
     feature.id = measurement.known_id.value_or(measurement.index);
     feature.known = measurement.known_id.has_value();

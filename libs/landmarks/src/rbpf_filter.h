@@ -72,15 +72,20 @@ class RbpfFilter : public LandmarkFilter {
   };
 
   void observe(Particle& particle, const MeasuredScan& scan);
-  std::vector<Origin> associate(const Particle& particle, const MeasuredScan& scan,
+  std::vector<Origin> associate(const Particle& particle, const MeasuredScan& scan, const Composition& sensor,
                                 const std::vector<FeatureMap::Place>& places) const;
-  std::vector<FeatureMap::Place> visible(const Particle& particle, const MeasuredScan& scan) const;
+  std::vector<FeatureMap::Place> visible(const Particle& particle, const MeasuredScan& scan,
+                                         const Composition& sensor) const;
   void improveProposal(Particle& particle, const MeasuredScan& scan, const std::vector<Match>& matches) const;
   void samplePose(Particle& particle);
   void weigh(Particle& particle, const MeasuredScan& scan, const std::vector<Match>& matches) const;
-  void updateFeatures(Particle& particle, const MeasuredScan& scan, const std::vector<Match>& matches,
-                      const std::vector<FeatureMap::Place>& places) const;
-  void addNew(Particle& particle, const MeasuredScan& scan, const std::vector<Origin>& origins);
+  void updateFeatures(Particle& particle, const MeasuredScan& scan, const Composition& sensor,
+                      const std::vector<Match>& matches, const std::vector<FeatureMap::Place>& places) const;
+  std::vector<FeatureMap::Place> missed(const Particle& particle, const MeasuredScan& scan,
+                                        const Composition& sensor, const std::vector<Match>& matches,
+                                        const std::vector<FeatureMap::Place>& places) const;
+  void addNew(Particle& particle, const MeasuredScan& scan, const Composition& sensor,
+              const std::vector<Origin>& origins);
   void normalise();
   double effective() const;
   void resample();

@@ -22,15 +22,17 @@ struct Origin {
 };
 
 /** Pairs by ascending distance, each measurement and each feature once, up to `match_gate`; a measurement
- * with no feature within `new_gate` is of a new one, what is left is ambiguous.
+ * with no feature within `new_gate` is of a new one, what is left is ambiguous. Of equal distances that of
+ * the first measurement and feature comes first.
  * @param pairings all those within new_gate */
 std::vector<Origin> assign(std::size_t measurements, std::vector<Pairing> pairings, double match_gate);
 
-/** vᵀ S⁻¹ v and log det(2π S). */
+/** vᵀ S⁻¹ v, and log det(2π S). */
 struct Innovation {
   double distance2 = 0, log_volume = 0;
   double logLikelihood() const { return -0.5 * (distance2 + log_volume); }
 };
+double squaredDistance(const Eigen::Vector2d& v, const Eigen::Matrix2d& s);
 Innovation measure(const Eigen::Vector2d& v, const Eigen::Matrix2d& s);
 
 }  // namespace submap_slam::landmark_mapping

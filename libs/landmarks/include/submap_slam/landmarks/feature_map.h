@@ -27,6 +27,7 @@ class FeatureMap {
   /** Where a feature is, until the map changes next. */
   struct Place {
     std::size_t tile = 0, index = 0;
+    bool operator==(const Place& o) const { return tile == o.tile && index == o.index; }
   };
 
   std::size_t size() const { return size_; }
@@ -38,8 +39,10 @@ class FeatureMap {
 
   void insert(const Feature& feature);
 
-  /** Replaces features and removes those whose evidence is below 0. Places are of the map before. */
-  void replace(const std::vector<std::pair<Place, Feature>>& changes);
+  /** Replaces features, takes evidence from others that were missed, and removes those of both whose evidence
+   * is below 0 then. Places are of the map before. */
+  void update(const std::vector<std::pair<Place, Feature>>& changes, const std::vector<Place>& missed = {},
+              double lost_evidence = 0);
 
   /** True if both maps hold the tile of the place in the same memory. */
   bool sharesTile(const FeatureMap& other, const Place& place) const;

@@ -36,6 +36,9 @@ struct Predicted {
 };
 Predicted predictMeasurement(const Pose& robot, const Pose& T_robot_sensor, const Point& feature);
 
+/** The same for a sensor whose pose is known already. @param sensor compose(robot, T_robot_sensor) */
+Predicted predictMeasurement(const Composition& sensor, const Point& feature);
+
 /** Where a measured feature is, the inverse of predictMeasurement(). */
 struct Located {
   Point feature;
@@ -43,6 +46,7 @@ struct Located {
   Eigen::Matrix2d by_measurement;
 };
 Located locate(const Pose& robot, const Pose& T_robot_sensor, const Eigen::Vector2d& z);
+Located locate(const Composition& sensor, const Eigen::Vector2d& z);
 
 /** z − ẑ with the bearing wrapped. */
 Eigen::Vector2d innovationOf(const Eigen::Vector2d& z, const Eigen::Vector2d& predicted);
