@@ -250,6 +250,37 @@ TEST(LandmarkFilter, FindsTheSameFeaturesWithoutIds) {
   }
 }
 
+/** The turn is 0.045 rad more than odometry says (2.2 σ), which sets every bearing off: a tree far away then
+ * stands nearer to where its neighbour was expected. Trees that nothing rivals tell. */
+TEST(LandmarkFilter, ATurnThatOdometryUnderratesIsToldByWhatStandsAlone) {
+  const std::vector<std::pair<double, double>> alone{{9, -0.9}, {12, -0.3}, {10, 0.9}},
+      pair{{30, 0.3}, {30, 0.23}};
+  const Eigen::Matrix2d noise = Eigen::Vector2d(0.01, 3e-4).asDiagonal();
+  const Pose turned(0, 0, 0.145);
+  MeasuredScan before{Pose::Zero(), 0, 0, {}}, after = before;
+  const auto see = [&](const std::pair<double, double>& tree, bool again) {
+    const auto index = static_cast<uint32_t>(before.measurements.size() + 1);
+    const Point at = locate(Pose::Zero(), Pose::Zero(), {tree.first, tree.second}).feature;
+    before.measurements.push_back({{{tree.first, tree.second}, noise}, {}, index});
+    if (again)
+      after.measurements.push_back({{predictMeasurement(turned, Pose::Zero(), at).z, noise}, {}, 10 + index});
+  };
+  for (const auto& tree : alone) see(tree, true);
+  see(pair[0], true);
+  see(pair[1], false);
+  for (const char* method : {"ekf", "rbpf"}) {
+    LandmarkMapperParams params = paramsOf(method);
+    params.association.min_hits = 1;
+    const auto filter = makeLandmarkFilter(params, 1);
+    filter->observe(before);
+    filter->predict({{0, 0, 0.1}, Eigen::Vector3d(1e-4, 1e-4, 4e-4).asDiagonal()});
+    filter->observe(after);
+    std::map<uint32_t, uint32_t> hits;
+    for (const SubmapFeature& feature : filter->estimate().features) hits[feature.id] = feature.hits;
+    EXPECT_EQ(hits, (std::map<uint32_t, uint32_t>{{1, 2}, {2, 2}, {3, 2}, {4, 2}, {5, 1}})) << method;
+  }
+}
+
 TEST(LandmarkFilter, IdsCanBeIgnored) {
   LandmarkMapperParams params = paramsOf("ekf");
   params.association.known_ids = false;

@@ -49,7 +49,8 @@ void EkfFilter::predict(const MotionStep& step) {
   path_.push_back(pose());
 }
 
-std::vector<Pairing> EkfFilter::pairingsOf(std::size_t m, const MeasuredScan& scan) const {
+std::vector<Pairing> EkfFilter::pairingsOf(std::size_t m, const MeasuredScan& scan,
+                                           const Composition& sensor) const {
   const Measurement& measurement = scan.measurements[m];
   std::vector<Pairing> pairings;
   for (std::size_t f = 0; f < tracks_.size(); ++f) {
@@ -57,40 +58,44 @@ std::vector<Pairing> EkfFilter::pairingsOf(std::size_t m, const MeasuredScan& sc
       if (tracks_[f].known && tracks_[f].id == *measurement.known_id) return {{m, f, 0}};
       continue;
     }
-    const Row rows{predictMeasurement(pose(), scan.T_robot_sensor, feature(f)), row(f)};
+    const Row rows{predictMeasurement(sensor, feature(f)), row(f)};
     Eigen::Matrix<double, 5, 5> p;  // of the pose and the feature
     p << covariance_.topLeftCorner<3, 3>(), covariance_.block<3, 2>(0, row(f)),
         covariance_.block<2, 3>(row(f), 0), covariance_.block<2, 2>(row(f), row(f));
     Eigen::Matrix<double, 2, 5> h;
     h << rows.predicted.by_pose, rows.predicted.by_feature;
     const Eigen::Matrix2d s = h * p * h.transpose() + measurement.value.noise;
-    const double distance2 = measure(innovationOf(measurement.value.z, rows.predicted.z), s).distance2;
+    const double distance2 = squaredDistance(innovationOf(measurement.value.z, rows.predicted.z), s);
     if (distance2 <= params_.new_gate) pairings.push_back({m, f, distance2});
   }
   return pairings;
 }
 
-std::vector<Origin> EkfFilter::associate(const MeasuredScan& scan) const {
+/** Of the measurements that have no feature yet. */
+std::vector<Pairing> EkfFilter::pairingsOf(const MeasuredScan& scan,
+                                           const std::vector<Origin>& origins) const {
+  const Composition sensor = compose(pose(), scan.T_robot_sensor);
   std::vector<Pairing> pairings;
-  for (std::size_t m = 0; m < scan.measurements.size(); ++m) {
-    const auto own = pairingsOf(m, scan);
+  for (std::size_t m = 0; m < origins.size(); ++m) {
+    if (origins[m].kind == Origin::Kind::kFeature) continue;
+    const auto own = pairingsOf(m, scan, sensor);
     pairings.insert(pairings.end(), own.begin(), own.end());
   }
-  return assign(scan.measurements.size(), std::move(pairings), params_.match_gate);
+  return pairings;
 }
 
 void EkfFilter::observe(const MeasuredScan& scan) {
-  const auto origins = associate(scan);
-  std::vector<std::pair<std::size_t, std::size_t>> matches;
-  for (std::size_t m = 0; m < origins.size(); ++m)
-    if (origins[m].kind == Origin::Kind::kFeature) matches.emplace_back(m, origins[m].feature);
-  update(scan, matches);
+  const std::vector<Origin> none(scan.measurements.size());
+  const auto certain = unrivalled(none.size(), pairingsOf(scan, none), params_.match_gate);
+  update(scan, newMatches(none, certain));
+  const auto origins = assign(certain, pairingsOf(scan, certain), params_.match_gate);
+  update(scan, newMatches(certain, origins));
   path_.back() = pose();
   for (std::size_t m = 0; m < origins.size(); ++m)
     if (origins[m].kind == Origin::Kind::kNew) add(scan.T_robot_sensor, scan.measurements[m]);
 }
 
-/** All matches of the scan at once: K = P Hᵀ S⁻¹, x += K v, P −= K S Kᵀ. */
+/** All matches at once: K = P Hᵀ S⁻¹, x += K v, P −= K S Kᵀ. */
 void EkfFilter::update(const MeasuredScan& scan,
                        const std::vector<std::pair<std::size_t, std::size_t>>& matches) {
   if (matches.empty()) return;

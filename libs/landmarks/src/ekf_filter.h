@@ -24,8 +24,9 @@ class EkfFilter : public LandmarkFilter {
     bool known = false;
     uint32_t hits = 1;
   };
-  std::vector<Origin> associate(const MeasuredScan& scan) const;
-  std::vector<Pairing> pairingsOf(std::size_t measurement, const MeasuredScan& scan) const;
+  std::vector<Pairing> pairingsOf(const MeasuredScan& scan, const std::vector<Origin>& origins) const;
+  std::vector<Pairing> pairingsOf(std::size_t measurement, const MeasuredScan& scan,
+                                  const Composition& sensor) const;
   void update(const MeasuredScan& scan, const std::vector<std::pair<std::size_t, std::size_t>>& matches);
   void add(const Pose& T_robot_sensor, const Measurement& measurement);
   Pose pose() const { return mean_.head<3>(); }

@@ -7,12 +7,26 @@
 
 namespace submap_slam::landmark_mapping {
 
-std::vector<Origin> assign(std::size_t measurements, std::vector<Pairing> pairings, double match_gate) {
+std::vector<Origin> unrivalled(std::size_t measurements, const std::vector<Pairing>& pairings,
+                               double match_gate) {
+  std::vector<Origin> origins(measurements);
+  for (const Pairing& p : pairings) {
+    const auto touches = [&p](const Pairing& q) {
+      return q.measurement == p.measurement || q.feature == p.feature;
+    };
+    if (p.distance2 <= match_gate && std::count_if(pairings.begin(), pairings.end(), touches) == 1)
+      origins[p.measurement] = {Origin::Kind::kFeature, p.feature};
+  }
+  return origins;
+}
+
+std::vector<Origin> assign(std::vector<Origin> origins, std::vector<Pairing> pairings, double match_gate) {
   std::sort(pairings.begin(), pairings.end(), [](const Pairing& a, const Pairing& b) {
     return std::tie(a.distance2, a.measurement, a.feature) < std::tie(b.distance2, b.measurement, b.feature);
   });
-  std::vector<Origin> origins(measurements);
   std::vector<std::size_t> taken;
+  for (const Origin& origin : origins)
+    if (origin.kind == Origin::Kind::kFeature) taken.push_back(origin.feature);
   for (const Pairing& p : pairings) {
     Origin& origin = origins[p.measurement];
     if (origin.kind == Origin::Kind::kFeature) continue;
@@ -22,6 +36,15 @@ std::vector<Origin> assign(std::size_t measurements, std::vector<Pairing> pairin
     taken.push_back(p.feature);
   }
   return origins;
+}
+
+std::vector<std::pair<std::size_t, std::size_t>> newMatches(const std::vector<Origin>& before,
+                                                            const std::vector<Origin>& now) {
+  std::vector<std::pair<std::size_t, std::size_t>> matches;
+  for (std::size_t m = 0; m < now.size(); ++m)
+    if (now[m].kind == Origin::Kind::kFeature && before[m].kind != Origin::Kind::kFeature)
+      matches.emplace_back(m, now[m].feature);
+  return matches;
 }
 
 double squaredDistance(const Eigen::Vector2d& v, const Eigen::Matrix2d& s) { return v.dot(s.inverse() * v); }

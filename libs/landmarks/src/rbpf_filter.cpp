@@ -90,28 +90,49 @@ void RbpfFilter::observe(const MeasuredScan& scan) {
 
 void RbpfFilter::observe(Particle& particle, const MeasuredScan& scan) {
   if (!scan.measurements.empty() && !improved_proposal_) samplePose(particle);
-  const Composition expected = compose(particle.pose, scan.T_robot_sensor);
-  const auto places = visible(particle, scan, expected);
-  const auto origins = associate(particle, scan, expected, places);
-  std::vector<Match> matches;
-  for (std::size_t m = 0; m < origins.size(); ++m) {
-    if (origins[m].kind == Origin::Kind::kFeature) {
-      matches.push_back({m, places[origins[m].feature]});
-      note(particle, m, particle.features.at(matches.back().place).id);
-    } else if (!scan.measurements[m].known_id) {
-      particle.log_weight += unexplained(scan.measurements[m].value.noise, association_.new_gate);
-    }
-  }
-  if (improved_proposal_) {
-    improveProposal(particle, scan, matches);
-    if (!scan.measurements.empty()) samplePose(particle);
-  } else {
-    weigh(particle, scan, matches);
-  }
+  const auto places = visible(particle, scan);
+  const std::vector<Origin> none(scan.measurements.size());
+  const auto certain =
+      unrivalled(none.size(), pairingsOf(particle, scan, places, none), association_.match_gate);
+  auto matches = matchesAt(places, newMatches(none, certain));
+  take(particle, scan, matches);
+  const auto origins = assign(certain, pairingsOf(particle, scan, places, certain), association_.match_gate);
+  const auto others = matchesAt(places, newMatches(certain, origins));
+  take(particle, scan, others);
+  matches.insert(matches.end(), others.begin(), others.end());
+
+  noteOrigins(particle, scan, origins, places);
+  if (!scan.measurements.empty() && improved_proposal_) samplePose(particle);
   nodes_[particle.path].pose = particle.pose;
   const Composition sensor = compose(particle.pose, scan.T_robot_sensor);
   updateFeatures(particle, scan, sensor, matches, places);
   addNew(particle, scan, sensor, origins);
+}
+
+std::vector<RbpfFilter::Match> RbpfFilter::matchesAt(
+    const std::vector<Place>& places, const std::vector<std::pair<std::size_t, std::size_t>>& found) {
+  std::vector<Match> matches;
+  matches.reserve(found.size());
+  for (const auto& [measurement, feature] : found) matches.push_back({measurement, places[feature]});
+  return matches;
+}
+
+/** Matches tell the pose, or the weight of the one that is drawn already. */
+void RbpfFilter::take(Particle& particle, const MeasuredScan& scan, const std::vector<Match>& matches) const {
+  if (improved_proposal_)
+    improveProposal(particle, scan, matches);
+  else
+    weigh(particle, scan, matches);
+}
+
+void RbpfFilter::noteOrigins(Particle& particle, const MeasuredScan& scan, const std::vector<Origin>& origins,
+                             const std::vector<Place>& places) {
+  for (std::size_t m = 0; m < origins.size(); ++m) {
+    if (origins[m].kind == Origin::Kind::kFeature)
+      note(particle, m, particle.features.at(places[origins[m].feature]).id);
+    else if (!scan.measurements[m].known_id)
+      particle.log_weight += unexplained(scan.measurements[m].value.noise, association_.new_gate);
+  }
 }
 
 void RbpfFilter::note(const Particle& particle, std::size_t measurement, uint32_t feature) {
@@ -119,12 +140,12 @@ void RbpfFilter::note(const Particle& particle, std::size_t measurement, uint32_
 }
 
 /** Features that the scan may see, and those that it names. */
-std::vector<Place> RbpfFilter::visible(const Particle& particle, const MeasuredScan& scan,
-                                       const Composition& sensor) const {
+std::vector<Place> RbpfFilter::visible(const Particle& particle, const MeasuredScan& scan) const {
+  const Pose sensor = compose(particle.pose, scan.T_robot_sensor).pose;
   double range = scan.max_range;
   for (const auto& m : scan.measurements) range = std::max(range, m.value.z[0]);
   constexpr double kMargin = 10;  // m
-  auto places = particle.features.around(sensor.pose.head<2>(), range + kMargin);
+  auto places = particle.features.around(sensor.head<2>(), range + kMargin);
   const auto named = [&](const Measurement& m) {
     return !m.known_id || std::any_of(places.begin(), places.end(), [&](const Place& place) {
       return particle.features.at(place).id == *m.known_id;
@@ -135,10 +156,14 @@ std::vector<Place> RbpfFilter::visible(const Particle& particle, const MeasuredS
   return places;
 }
 
-std::vector<Origin> RbpfFilter::associate(const Particle& particle, const MeasuredScan& scan,
-                                          const Composition& sensor, const std::vector<Place>& places) const {
+/** Of the measurements that have no feature yet. */
+std::vector<Pairing> RbpfFilter::pairingsOf(const Particle& particle, const MeasuredScan& scan,
+                                            const std::vector<Place>& places,
+                                            const std::vector<Origin>& origins) const {
+  const Composition sensor = compose(particle.pose, scan.T_robot_sensor);
   std::vector<Pairing> pairings;
-  for (std::size_t m = 0; m < scan.measurements.size(); ++m) {
+  for (std::size_t m = 0; m < origins.size(); ++m) {
+    if (origins[m].kind == Origin::Kind::kFeature) continue;
     const Measurement& measurement = scan.measurements[m];
     const RangeBearing& value = measurement.value;
     const Point located = locate(sensor, value.z).feature;
@@ -158,7 +183,7 @@ std::vector<Origin> RbpfFilter::associate(const Particle& particle, const Measur
       if (distance2 <= association_.new_gate) pairings.push_back({m, f, distance2});
     }
   }
-  return assign(scan.measurements.size(), std::move(pairings), association_.match_gate);
+  return pairings;
 }
 
 /** FastSLAM 2: the pose Gaussian takes one measurement after the other; the likelihoods of these innovations

@@ -72,10 +72,13 @@ class RbpfFilter : public LandmarkFilter {
   };
 
   void observe(Particle& particle, const MeasuredScan& scan);
-  std::vector<Origin> associate(const Particle& particle, const MeasuredScan& scan, const Composition& sensor,
-                                const std::vector<FeatureMap::Place>& places) const;
-  std::vector<FeatureMap::Place> visible(const Particle& particle, const MeasuredScan& scan,
-                                         const Composition& sensor) const;
+  static std::vector<Match> matchesAt(const std::vector<FeatureMap::Place>& places,
+                                      const std::vector<std::pair<std::size_t, std::size_t>>& found);
+  std::vector<Pairing> pairingsOf(const Particle& particle, const MeasuredScan& scan,
+                                  const std::vector<FeatureMap::Place>& places,
+                                  const std::vector<Origin>& origins) const;
+  std::vector<FeatureMap::Place> visible(const Particle& particle, const MeasuredScan& scan) const;
+  void take(Particle& particle, const MeasuredScan& scan, const std::vector<Match>& matches) const;
   void improveProposal(Particle& particle, const MeasuredScan& scan, const std::vector<Match>& matches) const;
   void samplePose(Particle& particle);
   void weigh(Particle& particle, const MeasuredScan& scan, const std::vector<Match>& matches) const;
@@ -96,6 +99,8 @@ class RbpfFilter : public LandmarkFilter {
   Mixture mixtureOfAssociations() const;
   bool addSmoothed(const Particle& particle, const std::vector<Seen>& association, double weight,
                    Mixture& mixture) const;
+  void noteOrigins(Particle& particle, const MeasuredScan& scan, const std::vector<Origin>& origins,
+                   const std::vector<FeatureMap::Place>& places);
   void note(const Particle& particle, std::size_t measurement, uint32_t feature);
   const Particle& best() const;
 

@@ -4,6 +4,7 @@
 #include <submap_slam/landmarks/landmark_geometry.h>
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace submap_slam::landmark_mapping {
@@ -21,11 +22,23 @@ struct Origin {
   std::size_t feature = 0;  ///< where kFeature
 };
 
+/** Matches up to `match_gate` that nothing rivals: neither the measurement nor the feature is in another
+ * pairing. Where all bearings are off alike, by a turn that odometry got wrong, these tell it, and what is
+ * left is judged better once the filter has taken them.
+ * @param pairings all those within new_gate */
+std::vector<Origin> unrivalled(std::size_t measurements, const std::vector<Pairing>& pairings,
+                               double match_gate);
+
 /** Pairs by ascending distance, each measurement and each feature once, up to `match_gate`; a measurement
  * with no feature within `new_gate` is of a new one, what is left is ambiguous. Of equal distances that of
  * the first measurement and feature comes first.
- * @param pairings all those within new_gate */
-std::vector<Origin> assign(std::size_t measurements, std::vector<Pairing> pairings, double match_gate);
+ * @param origins those that are kFeature stay, and their features are taken
+ * @param pairings all those of the other measurements within new_gate */
+std::vector<Origin> assign(std::vector<Origin> origins, std::vector<Pairing> pairings, double match_gate);
+
+/** (measurement, feature) of the matches that `now` has and `before` had not. */
+std::vector<std::pair<std::size_t, std::size_t>> newMatches(const std::vector<Origin>& before,
+                                                            const std::vector<Origin>& now);
 
 /** vᵀ S⁻¹ v, and log det(2π S). */
 struct Innovation {
