@@ -2,21 +2,27 @@
 #include <submap_slam/core/errors.h>
 #include <submap_slam/eval/relations.h>
 #include <submap_slam/eval/trajectory_error.h>
+#include <submap_slam/pipeline/run_files.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "commands.h"
+#include "landmark_scores.h"
 
 namespace submap_slam {
+namespace fs = std::filesystem;
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 struct EvalOptions {
-  std::string trajectory, relations, reference;
+  std::string result;      ///< trajectory or folder
+  std::string trajectory;  ///< of the result
+  std::string relations, reference, landmarks;
   RelationsOptions filter;
   double split_s = 60;
   bool json = false;
@@ -90,14 +96,44 @@ Json evaluateAgainstReference(const EvalOptions& options, const TimedTrajectory&
   return {{"absolute", toJson(absolute)}, {"relative", toJson(relative)}};
 }
 
-int runEval(const EvalOptions& options) {
+bool isFolder(const EvalOptions& options) { return fs::is_directory(options.result); }
+
+bool hasLandmarks(const EvalOptions& options) {
+  return isFolder(options) && fs::exists(fs::path(options.result) / "landmarks.csv");
+}
+
+Json evaluateLandmarks(const EvalOptions& options, const TimedTrajectory& trajectory) {
+  const fs::path submaps = fs::path(options.result) / kLandmarkFile;
+  const LandmarkScores scores = landmarkScores(options.result, fs::exists(submaps) ? submaps.string() : "",
+                                               trajectory, readTum(options.reference), options.landmarks);
+  if (!options.json) fmt::print("{}", landmarkTable(scores));
+  Json figures;
+  addLandmarkScores(figures, scores);
+  return figures;
+}
+
+void checkTruth(const EvalOptions& options) {
   if (options.relations.empty() && options.reference.empty())
     throw ConfigError("eval: give --relations R.relations or --reference T.tum");
+  if (options.landmarks.empty()) return;
+  if (options.reference.empty())
+    throw ConfigError("eval: --landmarks needs --reference T.tum, which tells where the map begins");
+  if (!hasLandmarks(options))
+    throw InputError(
+        fmt::format("{}: --landmarks: expected the folder of a result with landmarks.csv", options.result));
+}
+
+int runEval(EvalOptions& options) {
+  checkTruth(options);
   checkLimits(options);
+  options.trajectory =
+      isFolder(options) ? (fs::path(options.result) / "trajectory.tum").string() : options.result;
   const TimedTrajectory trajectory = readTum(options.trajectory);
   Json result;
   if (!options.relations.empty()) result["relations"] = evaluateAgainstRelations(options, trajectory);
   if (!options.reference.empty()) result["reference"] = evaluateAgainstReference(options, trajectory);
+  if (!options.reference.empty() && hasLandmarks(options))
+    result["landmarks"] = evaluateLandmarks(options, trajectory);
   if (options.json) fmt::print("{}\n", result.dump(2));
   return kSuccess;
 }
@@ -106,15 +142,21 @@ int runEval(const EvalOptions& options) {
 
 void addEvalCommand(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<EvalOptions>();
-  CLI::App* command = app.add_subcommand("eval", "Errors of a trajectory against relations or a reference");
-  command->add_option("trajectory", options->trajectory, "The trajectory to judge")
+  CLI::App* command = app.add_subcommand("eval", "Errors of a result against relations or a reference");
+  command
+      ->add_option("result", options->result,
+                   "The trajectory to judge, or the folder of a result: its trajectory, and with --reference "
+                   "also its landmarks and whether their covariances are honest")
       ->required()
-      ->type_name("TRAJECTORY.tum");
+      ->type_name("TRAJECTORY.tum|FOLDER");
   command->add_option("--relations", options->relations, "Known relative poses: t1 t2 x y z roll pitch yaw")
       ->type_name("R.relations")
       ->group("Truth");
   command->add_option("--reference", options->reference, "Reference trajectory in TUM format")
       ->type_name("T.tum")
+      ->group("Truth");
+  command->add_option("--landmarks", options->landmarks, "True landmarks: id,x,y in the reference's frame")
+      ->type_name("L.csv")
       ->group("Truth");
   command->add_option("--min-dt", options->filter.min_dt_s, "Only relations at least this long (s)")
       ->type_name("S")

@@ -153,7 +153,7 @@ Experiment readExperiment(const ExperimentFile& file, const std::vector<std::str
     experiment.seeds.push_back(parseSeed(seed, "[experiment] seeds"));
   for (const auto& key : listOf("columns", lists.columns))
     experiment.columns.push_back(experimentColumn(key, "[experiment] columns"));
-  experiment.plots = readPlots(file, experiment.columns);
+  experiment.plots = readPlots(file, experiment.columns, experiment.seeds);
   return experiment;
 }
 

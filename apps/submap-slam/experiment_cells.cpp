@@ -6,9 +6,14 @@
 #include <submap_slam/core/version.h>
 #include <submap_slam/output/json_file.h>
 #include <submap_slam/output/replace_file.h>
+#include <submap_slam/output/text_file.h>
 #include <submap_slam/output/trajectory_file.h>
+#include <submap_slam/pipeline/landmark_pipeline.h>
+#include <submap_slam/pipeline/map_forms.h>
 #include <submap_slam/pipeline/pipeline.h>
 #include <submap_slam/pipeline/results.h>
+#include <submap_slam/pipeline/run_files.h>
+#include <submap_slam/rawlog/landmark_log.h>
 #include <submap_slam/rawlog/resume_state.h>
 #include <tbb/info.h>
 
@@ -20,7 +25,6 @@
 #include <set>
 #include <sstream>
 
-#include <submap_slam/pipeline/map_forms.h>
 #include "cell_scores.h"
 #include "child_processes.h"
 #include "common_options.h"
@@ -116,9 +120,12 @@ struct Estimate {
   std::optional<EvidenceGrid> map;
 };
 
-Estimate runPipeline(const Cell& cell, const Configuration& config, Metrics& figures) {
+/** @param submaps the log holds landmark submaps, which are joined */
+Estimate runPipeline(const Cell& cell, const Configuration& config, bool submaps, Metrics& figures) {
   TerminalReporter reporter(true);
-  const RunSummary summary = mapRawlog(cell.log, cell.folder.string(), true, config, reporter);
+  const std::string folder = cell.folder.string();
+  const RunSummary summary = submaps ? joinLandmarkFile(cell.log, folder, true, config, reporter)
+                                     : mapRawlog(cell.log, folder, true, config, reporter);
   if (summary.interrupted) throw Interrupted();
   figures = summary.metrics;
   const double iterations = figures["join_iterations"].get<double>();
@@ -149,36 +156,52 @@ Estimate runBaseline(const Cell& cell, const Configuration& config, const std::v
   return estimate;
 }
 
+void judgeLandmarks(Metrics& figures, const Cell& cell, const std::string& submaps,
+                    const TimedTrajectory& estimate, const TimedTrajectory& truth) {
+  const LandmarkScores scores = landmarkScores(cell.folder, submaps, estimate, truth, cell.landmarks);
+  writeText((cell.folder / kConsistencyFile).string(), frameErrorsCsv(scores.frames));
+  addLandmarkScores(figures, scores);
+}
+
+/** @param submaps file of landmark submaps, empty if the result is without */
 void addScores(Metrics& figures, const Cell& cell, const Configuration& config, const Estimate& estimate,
-               const std::vector<Frame>& frames, bool landmarks) {
+               const std::vector<Frame>& frames, const std::string& submaps) {
   const TimedTrajectory& path = estimate.trajectory;
   if (!cell.truth.empty()) {
     const TimedTrajectory truth = readTum(cell.truth);
     addPoseScores(figures, path, truth);
     if (estimate.map) addMapScores(figures, *estimate.map, path, truth, frames, config.mapper);
-    if (landmarks)
-      addLandmarkScores(figures, OutputDirectory(cell.folder, true), path, truth, cell.landmarks);
+    if (!submaps.empty()) judgeLandmarks(figures, cell, submaps, path, truth);
   }
   if (!cell.data.relations.empty()) addRelationScores(figures, path, cell.data.relations);
   if (!cell.data.gps.empty()) addGpsScores(figures, path, cell.data.gps, cell.data.antenna);
 }
 
+/** Maps a log, or takes its poses from elsewhere, and judges the result. */
+void mapLog(const Cell& cell, const Configuration& config, Metrics& figures) {
+  const MapForms forms = mapForms(cell.log, config);
+  const bool pipeline = cell.setting.baseline.empty();
+  std::vector<Frame> frames;
+  if (!pipeline || (forms.grids && !cell.truth.empty()))
+    frames = readFrames(cell.log, readerParams(config, forms));
+  const Estimate estimate =
+      pipeline ? runPipeline(cell, config, false, figures) : runBaseline(cell, config, frames);
+  const std::string submaps = pipeline && forms.landmarks ? (cell.folder / kLandmarkFile).string() : "";
+  addScores(figures, cell, config, estimate, frames, submaps);
+}
+
+/** Joins a log of landmark submaps and judges the result. */
+void joinLog(const Cell& cell, const Configuration& config, Metrics& figures) {
+  if (!cell.setting.baseline.empty())
+    throw InputError(fmt::format("{}: holds landmark submaps, of which there is no baseline", cell.log));
+  addScores(figures, cell, config, runPipeline(cell, config, true, figures), {}, cell.log);
+}
+
 void runCell(const Cell& cell, int threads) {
   const auto config = configurationOf(cell);
   const auto limit = limitThreads(threads);
-  const MapForms forms = mapForms(cell.log, *config);
-  const bool pipeline = cell.setting.baseline.empty();
   Metrics figures;
-  Estimate estimate;
-  std::vector<Frame> frames;
-  if (!pipeline || (forms.grids && !cell.truth.empty()))
-    frames = readFrames(cell.log, readerParams(*config, forms));
-  if (pipeline)
-    estimate = runPipeline(cell, *config, figures);
-  else
-    estimate = runBaseline(cell, *config, frames);
-  addScores(figures, cell, *config, estimate, frames, pipeline && forms.landmarks);
-
+  (holdsLandmarkSubmaps(cell.log) ? joinLog : mapLog)(cell, *config, figures);
   figures["version"] = version();
   figures["mrpt"] = mrpt::system::MRPT_getVersion();
   figures["build"] = buildOf(cell);
@@ -199,30 +222,23 @@ bool isComplete(const Cell& cell, bool any_build) {
          (any_build || result.value("build", "") == buildOf(cell));
 }
 
+Cell cellOf(const fs::path& folder, const ExperimentData& data, const ExperimentSetting& setting,
+            uint64_t seed) {
+  const fs::path own = folder / "cells" / data.name / setting.name / std::to_string(seed);
+  if (data.world.empty()) return {data, setting, seed, own, data.log, data.truth, data.landmarks};
+  const SimulationFiles files = simulationFiles(folder, data, seed);
+  return {data, setting, seed, own, files.log, files.truth, files.landmarks};
+}
+
 std::vector<Cell> cellsOf(const Experiment& experiment, const fs::path& folder) {
   std::vector<Cell> cells;
   for (const auto& data : experiment.data)
     for (const auto& setting : experiment.settings)
-      for (const uint64_t seed : experiment.seeds) {
-        Cell cell{data,     setting,    seed,          cellFolder(folder, data, setting, seed),
-                  data.log, data.truth, data.landmarks};
-        if (!data.world.empty()) {
-          const SimulationFiles files = simulationFiles(folder, data, seed);
-          cell.log = files.log;
-          cell.truth = files.truth;
-          cell.landmarks = files.landmarks;
-        }
-        cells.push_back(cell);
-      }
+      for (const uint64_t seed : experiment.seeds) cells.push_back(cellOf(folder, data, setting, seed));
   return cells;
 }
 
 }  // namespace
-
-fs::path cellFolder(const fs::path& experiment_folder, const ExperimentData& data,
-                    const ExperimentSetting& setting, uint64_t seed) {
-  return experiment_folder / "cells" / data.name / setting.name / std::to_string(seed);
-}
 
 std::string listCells(const Experiment& experiment, const ExperimentRun& run) {
   std::string list;
@@ -248,11 +264,15 @@ bool runCells(const Experiment& experiment, const ExperimentRun& run, Reporter& 
   return runInChildProcesses(tasks, run.jobs, reporter);
 }
 
-CellResult readCell(const fs::path& folder) {
+CellResult readCell(const fs::path& experiment_folder, const ExperimentData& data,
+                    const ExperimentSetting& setting, uint64_t seed) {
+  const Cell described = cellOf(experiment_folder, data, setting, seed);
   CellResult cell;
-  std::ifstream error(folder / kErrorFile);
+  cell.folder = described.folder;
+  cell.truth = described.truth;
+  std::ifstream error(cell.folder / kErrorFile);
   std::getline(error, cell.error);
-  const auto result = readResult(folder);
+  const auto result = readResult(cell.folder);
   if (!result.is_object()) return cell;
   for (const auto& [key, value] : result.items())
     if (value.is_number()) cell.figures[key] = value.get<double>();

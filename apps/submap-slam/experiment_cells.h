@@ -27,14 +27,12 @@ struct CellResult {
   std::string error;  ///< why there are none; empty also if the cell has not run
   std::string build;  ///< hash of the program that ran it
   std::string mrpt;   ///< version of MRPT that it ran with
+  std::filesystem::path folder;
+  std::string truth;  ///< file with the true path, or empty
 
   /** Why there are no figures; empty if there are. */
   std::string failure() const;
 };
-
-/** Where the results of a cell are. */
-std::filesystem::path cellFolder(const std::filesystem::path& experiment_folder, const ExperimentData& data,
-                                 const ExperimentSetting& setting, uint64_t seed);
 
 /** Names of the cells with "complete" or "to do", one a line. */
 std::string listCells(const Experiment& experiment, const ExperimentRun& run);
@@ -44,6 +42,7 @@ std::string listCells(const Experiment& experiment, const ExperimentRun& run);
 bool runCells(const Experiment& experiment, const ExperimentRun& run, Reporter& reporter);
 
 /** The result of a cell as it is on disk. */
-CellResult readCell(const std::filesystem::path& folder);
+CellResult readCell(const std::filesystem::path& experiment_folder, const ExperimentData& data,
+                    const ExperimentSetting& setting, uint64_t seed);
 
 }  // namespace submap_slam

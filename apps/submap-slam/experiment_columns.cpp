@@ -70,6 +70,11 @@ const std::vector<ExperimentColumn>& experimentColumns() {
   return kColumns;
 }
 
+std::string unitOf(const ExperimentColumn& column) {
+  const std::size_t comma = column.label.rfind(", ");
+  return comma == std::string::npos ? "" : column.label.substr(comma + 2);
+}
+
 ExperimentColumn experimentColumn(const std::string& key, const std::string& where) {
   std::vector<std::string> known;
   for (const auto& column : experimentColumns()) {

@@ -11,6 +11,9 @@ struct ExperimentColumn {
   int decimals;
 };
 
+/** "s" of the label "total, s"; empty if it has none. */
+std::string unitOf(const ExperimentColumn& column);
+
 /** All columns there are. */
 const std::vector<ExperimentColumn>& experimentColumns();
 

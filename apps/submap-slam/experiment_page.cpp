@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <submap_slam/core/version.h>
 
+#include "experiment_curves.h"
+
 namespace submap_slam {
 namespace {
 
@@ -59,38 +61,64 @@ Json seedsOf(const Experiment& experiment) {
   return seeds;
 }
 
-/** Over the seeds, a series for each row. */
+/** "data, setting", with the column too where a plot has several. */
+std::string seriesLabel(const std::string& name, const ExperimentPlot& plot, const ExperimentColumn& column) {
+  return plot.y.size() == 1 ? name : fmt::format("{}, {}", name, column.label);
+}
+
+/** Over the seeds, a series for each row and column. */
 Json seriesOverSeeds(const ExperimentPlot& plot, const std::vector<ExperimentRow>& rows) {
   Json series = Json::array();
-  for (const ExperimentRow& row : rows) {
-    Json points = Json::array();
-    for (const CellResult& cell : row.cells) {
-      const Json value = figureJson(cell, plot.y.key);
-      points.push_back(value.is_null() ? value : Json{{"mean", value}, {"std", 0}});
+  for (const ExperimentRow& row : rows)
+    for (const ExperimentColumn& column : plot.y) {
+      Json points = Json::array();
+      for (const CellResult& cell : row.cells) {
+        const Json value = figureJson(cell, column.key);
+        points.push_back(value.is_null() ? value : Json{{"mean", value}, {"std", 0}});
+      }
+      const std::string name = fmt::format("{}, {}", row.data, row.setting);
+      series.push_back({{"label", seriesLabel(name, plot, column)}, {"points", points}});
     }
-    series.push_back({{"label", fmt::format("{}, {}", row.data, row.setting)}, {"points", points}});
-  }
   return series;
 }
 
-/** Means over the seeds, a series for each of the others. Rows go by data, then settings. */
+/** Means over the seeds, a series for each of the others and each column. Rows go by data, then settings. */
 Json seriesOfMeans(const Experiment& experiment, const ExperimentPlot& plot,
                    const std::vector<ExperimentRow>& rows) {
   const std::size_t settings = experiment.settings.size();
   const bool over_data = plot.x == "data";
   const Json names = over_data ? namesOf(experiment.settings) : namesOf(experiment.data);
   Json series = Json::array();
-  for (const Json& name : names) series.push_back({{"label", name}, {"points", Json::array()}});
-  for (std::size_t r = 0; r < rows.size(); ++r)
-    series[over_data ? r % settings : r / settings]["points"].push_back(statisticsJson(rows[r], plot.y.key));
+  for (std::size_t n = 0; n < names.size(); ++n)
+    for (const ExperimentColumn& column : plot.y) {
+      Json points = Json::array();
+      for (std::size_t r = 0; r < rows.size(); ++r)
+        if ((over_data ? r % settings : r / settings) == n)
+          points.push_back(statisticsJson(rows[r], column.key));
+      series.push_back({{"label", seriesLabel(names[n], plot, column)}, {"points", points}});
+    }
   return series;
+}
+
+/** Of the axis: the only column, or what several have in common. */
+Json axisJson(const std::vector<ExperimentColumn>& columns) {
+  const ExperimentColumn& first = columns.front();
+  return {{"label", columns.size() == 1 ? first.label : unitOf(first)}, {"decimals", first.decimals}};
 }
 
 Json plotJson(const Experiment& experiment, const ExperimentPlot& plot,
               const std::vector<ExperimentRow>& rows) {
-  Json json{{"name", plot.name}, {"title", plot.title}, {"kind", plot.kind}, {"x", plot.x}};
-  json["y"] = columnJson(plot.y);
-  if (plot.x == "seed") {
+  Json json{{"name", plot.name}, {"title", plot.title}, {"kind", plot.kind}};
+  if (plot.ofOneSeed()) {
+    json["seed"] = std::to_string(plot.seed.value_or(experiment.seeds.front()));
+    json["curves"] = (plot.kind == "errors" ? errorCurves : pathCurves)(experiment, plot, rows);
+    return json;
+  }
+  json["x"] = plot.x;
+  json["y"] = axisJson(plot.y);
+  if (plot.x == "time") {
+    json["curves"] = timeCurves(plot, rows);
+  } else if (plot.x == "seed") {
     json["places"] = seedsOf(experiment);
     json["series"] = seriesOverSeeds(plot, rows);
   } else {

@@ -30,7 +30,7 @@ std::vector<ExperimentRow> readRows(const Experiment& experiment, const fs::path
     for (const auto& setting : experiment.settings) {
       ExperimentRow row{data.name, setting.name, {}, ""};
       for (const uint64_t seed : experiment.seeds) {
-        const CellResult cell = readCell(cellFolder(folder, data, setting, seed));
+        const CellResult cell = readCell(folder, data, setting, seed);
         row.cells.push_back(cell);
         if (!cell.failure().empty())
           row.note += fmt::format("{}seed {}: {}", row.note.empty() ? "" : "; ", seed, cell.failure());

@@ -1,23 +1,46 @@
 #pragma once
 
 #include <mrpt/math/TPoint2D.h>
+#include <submap_slam/eval/landmark_errors.h>
+#include <submap_slam/eval/submap_nees.h>
 #include <submap_slam/eval/timed_trajectory.h>
-#include <submap_slam/output/output_directory.h>
-
-#include <string>
-
 #include <submap_slam/pipeline/metrics.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
 
 namespace submap_slam {
 
-/** Adds ci_frames and nees_frames, means over the poses where submaps end, and writes consistency.csv with
- * each of them; where true landmarks are given, landmark_rmse_m, ci_landmarks, nees_landmarks,
- * landmarks_compared and nees_local, the mean over submaps of their NEES per dimension. The first pose of the
- * estimate is taken to be the true one.
- * @param out             folder of a result with frames.csv, landmarks.csv and landmark_submaps.rawlog
- * @param true_landmarks  file with their true places, or empty */
-void addLandmarkScores(Metrics& scores, const OutputDirectory& out, const TimedTrajectory& estimate,
-                       const TimedTrajectory& truth, const std::string& true_landmarks);
+/** Each pose where a submap ends against the truth, beside the other files of a result. */
+constexpr const char* kConsistencyFile = "consistency.csv";
+
+/** How right a map of landmarks is and whether its covariances say so. */
+struct LandmarkScores {
+  std::vector<FrameError> frames;  ///< poses where submaps end
+  double frame_nees = 0;           ///< mean over them; 3 is expected
+  double frame_index = 0;          ///< mean over them
+  LandmarkErrors landmarks;        ///< compared is 0 without true landmarks
+  LandmarkMatch match{};           ///< by position where the map's ids are not those of the submaps
+  SubmapNees local;                ///< of submaps in their own frames
+};
+
+/** Judges a result; the first pose of the estimate is taken to be the true one.
+ * @param folder          a result with frames.csv, landmarks.csv and association.csv
+ * @param submaps         file of the landmark submaps; empty: without local NEES
+ * @param true_landmarks  file with their true places, or empty
+ *
+ * Throws InputError for files that do not fit together. */
+LandmarkScores landmarkScores(const std::filesystem::path& folder, const std::string& submaps,
+                              const TimedTrajectory& estimate, const TimedTrajectory& truth,
+                              const std::string& true_landmarks);
+
+/** Adds ci_frames and nees_frames, and where true landmarks are given, landmark_rmse_m, ci_landmarks,
+ * nees_landmarks, landmarks_compared and nees_local. */
+void addLandmarkScores(Metrics& figures, const LandmarkScores& scores);
+
+/** The same for people. */
+std::string landmarkTable(const LandmarkScores& scores);
 
 /** Adds gps_rmse_m and gps_median_m of the antenna's path, aligned, and gps_fixes, their number.
  * @param antenna its place on the robot (m) */

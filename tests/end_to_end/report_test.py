@@ -16,7 +16,8 @@ from report_browser import (DESKTOP, PHONE, Failure, browser, expect, expect_no_
 RUN_PANELS = ("map", "constraints", "objective", "uncertainty", "scores", "growth", "stages", "metrics", "settings",
               "messages")
 LANDMARK_PANELS = ("map", "objective", "uncertainty", "associations", "stages", "metrics", "settings", "messages")
-EXPERIMENT_PANELS = ("failed", "table", "plot-errors", "plot-seeds", "plot-missing", "cells", "made")
+EXPERIMENT_PANELS = ("failed", "table", "plot-errors", "plot-seeds", "plot-missing", "plot-never", "plot-paths-0", "cells",
+                     "made")
 COMPARISON_PANELS = ("map", "differences", "table-1", "table-2", "table-3", "table-4")
 
 
@@ -166,6 +167,12 @@ y = mae_m
 kind = lines
 [plot missing]
 y = gps_rmse_m
+[plot never]
+x = time
+y = ci_frames
+kind = lines
+[plot paths]
+kind = path
 """
 
 

@@ -44,8 +44,9 @@ TEST(LandmarkErrors, HandWorkedCase) {
   // the map lies at (10, 0), turned by 90°: its (1, 2) is (8, 1) of the truth
   const TPose2D T_truth_map(10, 0, kPi / 2);
   const LandmarkTruth truth{{1, {8, 1}}, {2, {10, 5}}};  // in the map: (1, 2) and (5, 0)
-  const auto errors = landmarkErrors(
-      {landmarkAt(1, 1, 2, 1), landmarkAt(2, 8, 4, 0.25), landmarkAt(3, 0, 0, 1)}, truth, T_truth_map);
+  const auto errors =
+      landmarkErrors({landmarkAt(1, 1, 2, 1), landmarkAt(2, 8, 4, 0.25), landmarkAt(3, 0, 0, 1)}, truth,
+                     T_truth_map, LandmarkMatch::kById);
   EXPECT_EQ(errors.compared, 2u);
   EXPECT_EQ(errors.unknown, 1u);
   EXPECT_NEAR(errors.rmse_m, std::sqrt(25.0 / 2), 1e-9);  // errors 0 and 5 m
@@ -54,8 +55,31 @@ TEST(LandmarkErrors, HandWorkedCase) {
 }
 
 TEST(LandmarkErrors, OfNothingAreZero) {
-  EXPECT_EQ(landmarkErrors({}, {}, {}).compared, 0u);
-  EXPECT_EQ(landmarkErrors({landmarkAt(1, 0, 0, 1)}, {}, {}).rmse_m, 0);
+  for (const auto match : {LandmarkMatch::kById, LandmarkMatch::kByPosition}) {
+    EXPECT_EQ(landmarkErrors({}, {}, {}, match).compared, 0u);
+    EXPECT_EQ(landmarkErrors({landmarkAt(1, 0, 0, 1)}, {}, {}, match).rmse_m, 0);
+  }
+}
+
+TEST(LandmarkErrors, ByPositionIdsSayNothing) {
+  const TPose2D T_truth_map(10, 0, kPi / 2);
+  const LandmarkTruth truth{{1, {10, 5}}, {2, {8, 1}}};  // in the map: (5, 0) and (1, 2)
+  const auto errors = landmarkErrors({landmarkAt(1, 1, 3, 1), landmarkAt(2, 5, 0, 1)}, truth, T_truth_map,
+                                     LandmarkMatch::kByPosition);
+  EXPECT_EQ(errors.compared, 2u);
+  EXPECT_NEAR(errors.rmse_m, std::sqrt(1 / 2.0), 1e-9);
+  EXPECT_NEAR(errors.mean_nees, 1 / 2.0, 1e-9);
+}
+
+TEST(LandmarkErrors, ByPositionEachTrueOneIsTakenOnceAndNoneBeyondTheGate) {
+  const LandmarkTruth truth{{1, {0, 0}}, {2, {2.5, 0}}, {3, {50, 0}}};
+  // the second is nearest to the first true one, but the first landmark is nearer still
+  const auto errors = landmarkErrors(
+      {landmarkAt(1, 0.5, 0, 1), landmarkAt(2, 1.0, 0, 1), landmarkAt(3, 50 + 1.01 * kLandmarkGate_m, 0, 1)},
+      truth, {}, LandmarkMatch::kByPosition);
+  EXPECT_EQ(errors.compared, 2u);
+  EXPECT_EQ(errors.unknown, 1u);
+  EXPECT_NEAR(errors.rmse_m, std::sqrt((0.5 * 0.5 + 1.5 * 1.5) / 2), 1e-9);
 }
 
 TEST(LandmarkFiles, AreReadBack) {
@@ -106,6 +130,9 @@ TEST(FrameErrors, HandWorkedCase) {
   EXPECT_NEAR(errors[0].index, 1.5 / 7.8147, 1e-4);
   EXPECT_THAT(frameErrorsCsv(errors),
               HasSubstr("\n1.000000,1.000000,2.000000,0.50000000,2.000000,4.000000,"));
+  const auto again = readFrameErrors(temp.write("consistency.csv", frameErrorsCsv(errors)));
+  ASSERT_EQ(again.size(), 1u);
+  EXPECT_EQ(frameErrorsCsv(again), frameErrorsCsv(errors));
 }
 
 }  // namespace

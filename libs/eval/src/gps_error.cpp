@@ -1,7 +1,5 @@
 #include <submap_slam/eval/gps_error.h>
 
-#include <submap_slam/eval/trajectory_error.h>
-
 #include <cstddef>
 
 #include "table_file.h"
@@ -9,7 +7,6 @@
 namespace submap_slam {
 
 using mrpt::math::TPoint2D;
-using mrpt::math::TPose2D;
 
 std::vector<GpsFix> readGps(const std::string& file) {
   std::vector<GpsFix> fixes;
@@ -30,22 +27,23 @@ std::vector<GpsFix> withoutOutliers(const std::vector<GpsFix>& fixes, double max
   return kept;
 }
 
-GpsError gpsError(const TimedTrajectory& trajectory, const std::vector<GpsFix>& fixes,
-                  const TPoint2D& antenna, double max_gap_s) {
+std::vector<PosePair> antennaPairs(const TimedTrajectory& trajectory, const std::vector<GpsFix>& fixes,
+                                   const TPoint2D& antenna, double max_gap_s) {
   constexpr double kTolerance_s = 1e-3;
-  GpsError error;
   std::vector<PosePair> pairs;
   for (const GpsFix& fix : fixes) {
     const auto pose = trajectory.at(fix.t, kTolerance_s, max_gap_s);
-    if (!pose) {
-      ++error.unused;
-      continue;
-    }
+    if (!pose) continue;
     const TPoint2D at = toPose2D(*pose).composePoint(antenna);
     pairs.push_back({fix.t, {fix.position.x, fix.position.y, 0}, {at.x, at.y, 0}});
   }
-  error.distance_m = absoluteTrajectoryError(pairs).translation_m;
-  return error;
+  return pairs;
+}
+
+GpsError gpsError(const TimedTrajectory& trajectory, const std::vector<GpsFix>& fixes,
+                  const TPoint2D& antenna, double max_gap_s) {
+  const auto pairs = antennaPairs(trajectory, fixes, antenna, max_gap_s);
+  return {absoluteTrajectoryError(pairs).translation_m, fixes.size() - pairs.size()};
 }
 
 }  // namespace submap_slam

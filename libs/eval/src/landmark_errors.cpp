@@ -6,7 +6,9 @@
 #include <submap_slam/eval/nees.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "table_file.h"
@@ -39,6 +41,42 @@ double chi2Quantile(double probability, unsigned n) {
     (chi2Cdf((low + high) / 2, n) < probability ? low : high) = (low + high) / 2;
   return high;
 }
+
+/** Of each landmark of a map the true place in the frame of the map, if there is one. */
+using TruePlaces = std::vector<std::optional<TPoint2D>>;
+
+TruePlaces placesById(const std::vector<JoinedLandmark>& landmarks, const LandmarkTruth& truth,
+                      const TPose2D& T_truth_map) {
+  TruePlaces places(landmarks.size());
+  for (std::size_t i = 0; i < landmarks.size(); ++i)
+    if (const auto known = truth.find(landmarks[i].id); known != truth.end())
+      places[i] = T_truth_map.inverseComposePoint(known->second);
+  return places;
+}
+
+TruePlaces placesByPosition(const std::vector<JoinedLandmark>& landmarks, const LandmarkTruth& truth,
+                            const TPose2D& T_truth_map) {
+  std::vector<TPoint2D> wanted;
+  for (const auto& [id, place] : truth) wanted.push_back(T_truth_map.inverseComposePoint(place));
+  std::vector<std::tuple<double, std::size_t, std::size_t>> near;  // distance, landmark, true one
+  for (std::size_t i = 0; i < landmarks.size(); ++i)
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      const double distance = std::hypot(landmarks[i].x - wanted[k].x, landmarks[i].y - wanted[k].y);
+      if (distance <= kLandmarkGate_m) near.emplace_back(distance, i, k);
+    }
+  std::sort(near.begin(), near.end());
+  TruePlaces places(landmarks.size());
+  std::vector<bool> taken(wanted.size());
+  for (const auto& [distance, i, k] : near) {
+    if (places[i] || taken[k]) continue;
+    places[i] = wanted[k];
+    taken[k] = true;
+  }
+  return places;
+}
+
+constexpr const char* kFrameErrorColumns =
+    "stamp,error_x,error_y,error_phi,sigma_x,sigma_y,sigma_phi,nees,consistency_index";
 
 }  // namespace
 
@@ -73,20 +111,20 @@ std::vector<JoinedLandmark> readMappedLandmarks(const std::string& file) {
 }
 
 LandmarkErrors landmarkErrors(const std::vector<JoinedLandmark>& landmarks, const LandmarkTruth& truth,
-                              const TPose2D& T_truth_map) {
+                              const TPose2D& T_truth_map, LandmarkMatch match) {
+  const TruePlaces places = match == LandmarkMatch::kById ? placesById(landmarks, truth, T_truth_map)
+                                                          : placesByPosition(landmarks, truth, T_truth_map);
   LandmarkErrors errors;
   double squares = 0, distances2 = 0;
-  for (const JoinedLandmark& landmark : landmarks) {
-    const auto known = truth.find(landmark.id);
-    if (known == truth.end()) {
+  for (std::size_t i = 0; i < landmarks.size(); ++i) {
+    if (!places[i]) {
       ++errors.unknown;
       continue;
     }
-    const TPoint2D wanted = T_truth_map.inverseComposePoint(known->second);
-    const Eigen::Vector2d e(landmark.x - wanted.x, landmark.y - wanted.y);
+    const Eigen::Vector2d e(landmarks[i].x - places[i]->x, landmarks[i].y - places[i]->y);
     ++errors.compared;
     squares += e.squaredNorm();
-    const Eigen::Matrix2d covariance = landmark.covariance.asEigen();
+    const Eigen::Matrix2d covariance = landmarks[i].covariance.asEigen();
     distances2 += e.dot(covariance.ldlt().solve(e));
   }
   if (errors.compared == 0) return errors;
@@ -137,11 +175,20 @@ std::vector<FrameError> frameErrors(const std::vector<TimedFrame>& frames, const
 }
 
 std::string frameErrorsCsv(const std::vector<FrameError>& errors) {
-  std::string text = "stamp,error_x,error_y,error_phi,sigma_x,sigma_y,sigma_phi,nees,consistency_index\n";
+  std::string text = std::string(kFrameErrorColumns) + "\n";
   for (const FrameError& e : errors)
     text += fmt::format("{:.6f},{:.6f},{:.6f},{:.8f},{:.6f},{:.6f},{:.8f},{:.6g},{:.6g}\n", e.t, e.error.x,
                         e.error.y, e.error.phi, e.sigma_x, e.sigma_y, e.sigma_phi, e.nees, e.index);
   return text;
+}
+
+std::vector<FrameError> readFrameErrors(const std::string& file) {
+  std::vector<FrameError> errors;
+  for (const TableRow& row : readTable(file, kFrameErrorColumns, true)) {
+    const auto& v = row.values;
+    errors.push_back({v[0], {v[1], v[2], v[3]}, v[4], v[5], v[6], v[7], v[8]});
+  }
+  return errors;
 }
 
 }  // namespace submap_slam

@@ -74,12 +74,20 @@ function chartOptions(spec, width) {
       ...spec.lines.map((line, k) => seriesOf(line, k, spec))],
     bands: spec.bands,
     legend: { live: true },
-    cursor: { drag: { x: true, y: false }, points: { show: !spec.bars } },
+    cursor: { drag: { x: true, y: false }, points: { show: !spec.bars }, ...(spec.nearest ? { dataIdx: nearestValue } : {}) },
     hooks: {
       setCursor: spec.onIndex ? [(plot) => spec.onIndex(plot.cursor.idx)] : [],
       draw: spec.lines.some((line) => line.spread) ? [(plot) => drawSpreads(plot, spec)] : [],
     },
   };
+}
+
+/** Index nearest to that under the cursor at which the line has a value. */
+function nearestValue(plot, line, index) {
+  const values = plot.data[line], has = (i) => values[i] !== null && values[i] !== undefined;
+  for (let step = 0; step < values.length; ++step)
+    for (const i of [index - step, index + step]) if (i >= 0 && i < values.length && has(i)) return i;
+  return index;
 }
 
 function wholeNumbers(_, ticks) { return ticks.map((t) => (Number.isInteger(t) ? String(t) : '')); }
@@ -99,9 +107,10 @@ function plottedValues(spec) {
 
 /** Adds a chart to a panel.
  * @param spec x: values; lines: [{label, color, values, spread, …}]; xLabel, yLabel; log: logarithmic y;
- *             places: names of the whole numbers x; bars: the lines as bars beside each other */
+ *             places: names of the whole numbers x; bars: the lines as bars beside each other;
+ *             nearest: lines have values at x of their own, the legend shows the nearest ones */
 function addChart(panel, spec) {
-  const box = element('div', { class: 'chart' });
+  const box = element('div', { class: 'chart', role: 'figure', 'aria-label': `${spec.yLabel} over ${spec.xLabel}: ${spec.lines.map((line) => line.label).join(', ')}` });
   panel.append(box);
   let plot;
   const { log, columns } = plottedValues(spec);

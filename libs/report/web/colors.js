@@ -5,6 +5,8 @@ const kSigmaScale = ['#1a8f78', '#7ba428', '#e0a100', '#e0651c', '#c41f3a'];
 const kAccepted = '#1f9d4c', kRejected = '#d83a30', kChain = '#7d8794', kFrame = '#1668c7', kHighlight = '#ff9d00';
 const kRunColors = ['#2a78d0', '#d9542b', '#1f9d4c', '#8b4fc8', '#b8860b', '#c2338f', '#0f9aa8', '#6b7280'];
 
+function runColor(k) { return kRunColors[k % kRunColors.length]; }
+
 function themeColor(name) { return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim(); }
 
 function channels(hex) { return [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16)); }

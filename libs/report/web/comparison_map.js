@@ -42,7 +42,7 @@ class ComparisonMap {
   }
 
   draw(side) {
-    const run = this.runs[this.sides[side]], color = kRunColors[this.sides[side] % kRunColors.length];
+    const run = this.runs[this.sides[side]], color = runColor(this.sides[side]);
     const { renderer, layers } = this.panes[side];
     layers.clearLayers();
     if (run.map) this.view.addPicture(run.map, side).addTo(layers);

@@ -38,33 +38,6 @@ function addResultTable(data) {
   panel.append(new DataTable([...nameColumns(), runs, ...columns], data.rows).node);
 }
 
-function plotLine(series, k, column) {
-  return {
-    label: series.label, color: kRunColors[k % kRunColors.length], show: (v) => fixed(v, column.decimals),
-    values: series.points.map((p) => (p ? p.mean : null)), spread: series.points.map((p) => (p ? p.std : 0)),
-  };
-}
-
-/** Room for all values with their spreads, and for the zero that bars stand on. */
-function plotRange(lines, bars) {
-  const ends = lines.flatMap((line) => line.values.flatMap((v, i) => (v === null ? [] : [v - line.spread[i], v + line.spread[i]])));
-  if (bars) ends.push(0);
-  const low = Math.min(...ends), high = Math.max(...ends);
-  return low === high ? [low - 1, high + 1] : uPlot.rangeNum(low, high, 0.1, bars);
-}
-
-function addPlot(plot) {
-  const over = plot.x === 'seed' ? 'Each seed' : `Mean over the seeds, with a line of one standard deviation to both sides, of each ${plot.x === 'data' ? 'data set' : 'setting'}`;
-  const panel = addPanel(`plot-${plot.name}`, plot.title, `${over}. What is missing failed or has no such figure.`, plot.places.length * plot.series.length > 12);
-  const bars = plot.kind === 'bars', lines = plot.series.map((series, k) => ({ ...plotLine(series, k, plot.y), points: !bars }));
-  if (lines.every((line) => line.values.every((v) => v === null))) {
-    panel.append(element('p', { class: 'note' }, 'No cell has this figure.'));
-    return;
-  }
-  const range = plotRange(lines, bars);
-  addChart(panel, { x: plot.places.map((_, i) => i), places: plot.places, xLabel: plot.x, yLabel: plot.y.label, lines, bars, height: 300, range: () => range });
-}
-
 function addCells(data) {
   const panel = addPanel('cells', 'Cells', 'Each data set, setting and seed by itself; cells/DATA/SETTING/SEED/ has all that the run wrote.', true);
   const figure = (column, i) => ({ title: column.label, hint: column.key, by: (cell) => cell.values[i], show: (cell) => fixed(cell.values[i], column.decimals) });

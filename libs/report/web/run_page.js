@@ -67,7 +67,7 @@ function addObjective(data) {
   }
   const x = iterations.map((_, i) => i + 1), levels = [...new Set(iterations.map((i) => i.level))];
   const lines = levels.map((level, k) => ({ label: levels.length > 1 ? `level ${level}` : 'objective',
-    color: kRunColors[k % kRunColors.length], points: true,
+    color: runColor(k), points: true,
     values: iterations.map((i) => (i.level === level ? i.cost : null)) }));
   addChart(panel, { x, lines, xLabel: 'iteration', yLabel: 'objective', xInteger: true, log: true });
   addChart(panel, { x, xLabel: 'iteration', yLabel: 'largest step', xInteger: true, log: true, lines: [

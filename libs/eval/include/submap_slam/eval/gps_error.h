@@ -4,6 +4,7 @@
 #include <mrpt/math/TPoint2D.h>
 #include <submap_slam/eval/error_statistics.h>
 #include <submap_slam/eval/timed_trajectory.h>
+#include <submap_slam/eval/trajectory_error.h>
 
 #include <string>
 #include <vector>
@@ -23,14 +24,20 @@ std::vector<GpsFix> readGps(const std::string& file);
  * from the one behind, while these are not as far apart from each other. */
 std::vector<GpsFix> withoutOutliers(const std::vector<GpsFix>& fixes, double max_jump = 50);
 
+/** Each fix as reference, with the antenna as the trajectory has it at that time; no headings. Fixes without
+ * a pose are left out.
+ * @param antenna      its place on the robot (m)
+ * @param max_gap_s    poses are interpolated over at most this */
+std::vector<PosePair> antennaPairs(const TimedTrajectory& trajectory, const std::vector<GpsFix>& fixes,
+                                   const mrpt::math::TPoint2D& antenna, double max_gap_s = 5);
+
 struct GpsError {
   ErrorStatistics distance_m;  ///< of fixes to the antenna
   std::size_t unused = 0;      ///< fixes without a pose
 };
 
-/** Errors after the SE(2) alignment of the antenna's path that makes their squares least.
- * @param antenna      its place on the robot (m)
- * @param max_gap_s    poses are interpolated over at most this */
+/** Errors after the SE(2) alignment of the antenna's path that makes their squares least; parameters as those
+ * of antennaPairs(). */
 GpsError gpsError(const TimedTrajectory& trajectory, const std::vector<GpsFix>& fixes,
                   const mrpt::math::TPoint2D& antenna, double max_gap_s = 5);
 

@@ -28,18 +28,28 @@ LandmarkTruth readLandmarkTruth(const std::string& file);
 /** Reads the landmarks.csv of a result; throws InputError naming file and line. */
 std::vector<JoinedLandmark> readMappedLandmarks(const std::string& file);
 
+/** How mapped landmarks find their true ones. */
+enum class LandmarkMatch {
+  kById,
+  kByPosition  ///< nearest pairs first, one to one, up to kLandmarkGate_m; ids say nothing
+};
+
+/** Farther apart no landmark is taken for a true one by its position (m). */
+constexpr double kLandmarkGate_m = 3;
+
 struct LandmarkErrors {
-  std::size_t compared = 0;  ///< landmarks with an id that the truth has
-  std::size_t unknown = 0;   ///< landmarks with an id that it does not have
+  std::size_t compared = 0;  ///< landmarks with a true one
+  std::size_t unknown = 0;   ///< landmarks without
   double rmse_m = 0;         ///< of the distances to the true positions
   double mean_index = 0;     ///< mean consistency index
   double mean_nees = 0;      ///< mean D², 2 is expected
 };
 
-/** Errors of landmarks whose ids are those of the truth.
+/** Errors of mapped landmarks. By position they are those of the landmarks within the gate, so that their
+ * number counts too.
  * @param T_truth_map the map frame seen from the frame of the truth; it is taken to be exact */
 LandmarkErrors landmarkErrors(const std::vector<JoinedLandmark>& landmarks, const LandmarkTruth& truth,
-                              const mrpt::math::TPose2D& T_truth_map);
+                              const mrpt::math::TPose2D& T_truth_map, LandmarkMatch match);
 
 /** Where a submap begins or ends. */
 struct TimedFrame {
@@ -66,5 +76,8 @@ std::vector<FrameError> frameErrors(const std::vector<TimedFrame>& frames, const
 
 /** A head and one line for each. */
 std::string frameErrorsCsv(const std::vector<FrameError>& errors);
+
+/** Reads what frameErrorsCsv() made; throws InputError naming file and line. */
+std::vector<FrameError> readFrameErrors(const std::string& file);
 
 }  // namespace submap_slam
