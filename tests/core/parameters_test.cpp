@@ -71,6 +71,21 @@ TEST_F(Parameters, SetEveryKindOfValueFromText) {
   EXPECT_EQ(settings.label, "two words");
 }
 
+TEST_F(Parameters, ChoicesThatAreListsHaveAnyOrderAndSpacing) {
+  std::string maps = "auto";
+  table.add("maps", maps, "Forms", {"auto", "grid", "landmarks", "grid, landmarks"});
+  for (const char* text : {"grid, landmarks", "grid,landmarks", "landmarks , grid", "landmarks,grid"}) {
+    maps = "auto";
+    table.set("filter", "maps", text);
+    EXPECT_EQ(maps, "grid, landmarks") << text;
+  }
+  table.set("filter", "maps", "landmarks");
+  EXPECT_EQ(maps, "landmarks");
+  for (const char* text : {"", "grid, grid", "auto, grid", "grid, landmarks, auto"})
+    EXPECT_THAT(refused(std::string("filter.maps=") + text),
+                HasSubstr("expected one of 'auto', 'grid', 'landmarks', 'grid, landmarks'"));
+}
+
 TEST_F(Parameters, TakeAssignmentsOfTheCommandLine) {
   table.set("scanner.range=3e1");
   table.set(" filter . label = a.b=c ");
@@ -107,7 +122,7 @@ TEST_F(Parameters, RangeIncludesItsEndsAndNothingBeyond) {
 
 TEST_F(Parameters, RefuseAnUnknownChoiceAndListTheKnownOnes) {
   EXPECT_THAT(refused("filter.scheme=stratified"),
-              AllOf(HasSubstr("[filter] scheme"), HasSubstr("systematic, residual")));
+              AllOf(HasSubstr("[filter] scheme"), HasSubstr("'systematic', 'residual'")));
   EXPECT_EQ(settings.scheme, "systematic");
 }
 
@@ -204,7 +219,7 @@ TEST_F(Parameters, TheReferenceHasARowForEveryKey) {
   table.writeReference(reference);
   EXPECT_THAT(reference.str(), HasSubstr("## [scanner]\n\nWhat the scanner gives"));
   EXPECT_THAT(reference.str(), HasSubstr("| `range` | `12.5` | m | 0.5 … 100 | Longest range |"));
-  EXPECT_THAT(reference.str(), HasSubstr("| `scheme` | `systematic` |  | systematic, residual |"));
+  EXPECT_THAT(reference.str(), HasSubstr("| `scheme` | `systematic` |  | `systematic`, `residual` |"));
   EXPECT_THAT(reference.str(), HasSubstr("| `seed` | `1` |  | ≥ 0 |"));
 }
 

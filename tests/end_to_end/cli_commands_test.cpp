@@ -154,7 +154,7 @@ TEST_F(CliTest, TheScanMatchingMapperMapsTheRoom) {
 
 TEST_F(CliTest, RefusesAnUnknownMapper) {
   expectRefused(run({"map", log("room.rawlog"), "-o", path("out"), "--set", "mapper.method=magic"}),
-                "expected one of rbpf, scan_matching");
+                "expected one of 'rbpf', 'scan_matching'");
 }
 
 TEST_F(CliTest, EffectiveConfigurationRepeatsTheRun) {

@@ -15,7 +15,7 @@ TEST_F(MapSourceTest, IsChosenByTheUserAndLeavesThePosesAlone) {
   EXPECT_EQ(contentOf(path("scans/trajectory.tum")), contentOf(path("submaps/trajectory.tum")));
   EXPECT_FALSE(contentOf(path("scans/map.pgm")) == contentOf(path("submaps/map.pgm")));
   expectRefused(run({"join", path("scans/submaps.rawlog"), "-o", path("no"), "--set", "joining.map=magic"}),
-                "expected one of scans, submaps");
+                "expected one of 'scans', 'submaps'");
 }
 
 }  // namespace

@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <iterator>
 #include <ostream>
+#include <sstream>
 
 #include "text.h"
 
@@ -47,10 +49,27 @@ bool parseBool(const Parameter& p, std::string text) {
   throw ConfigError(fmt::format("{} = '{}': expected true or false", qualified(p), text));
 }
 
-void checkChoice(const Parameter& p, const std::string& text) {
-  if (p.choices.empty() || std::find(p.choices.begin(), p.choices.end(), text) != p.choices.end()) return;
-  throw ConfigError(
-      fmt::format("{} = '{}': expected one of {}", qualified(p), text, fmt::join(p.choices, ", ")));
+/** The words of a list separated by commas or blanks, in alphabetical order. */
+std::vector<std::string> wordsOf(std::string list) {
+  std::replace(list.begin(), list.end(), ',', ' ');
+  std::istringstream stream(list);
+  std::vector<std::string> words{std::istream_iterator<std::string>(stream), {}};
+  std::sort(words.begin(), words.end());
+  return words;
+}
+
+/** Choices between marks, as one may be a list. */
+std::string choicesText(const Parameter& p, const char* mark) {
+  const std::string between = fmt::format("{0}, {0}", mark);
+  return fmt::format("{0}{1}{0}", mark, fmt::join(p.choices, between));
+}
+
+/** The choice that is meant: a list may have its words in any order, with or without blanks. */
+std::string chosen(const Parameter& p, const std::string& text) {
+  if (p.choices.empty()) return text;
+  for (const std::string& choice : p.choices)
+    if (wordsOf(choice) == wordsOf(text)) return choice;
+  throw ConfigError(fmt::format("{} = '{}': expected one of {}", qualified(p), text, choicesText(p, "'")));
 }
 
 void assign(const Parameter& p, const std::string& text) {
@@ -66,11 +85,7 @@ void assign(const Parameter& p, const std::string& text) {
                    *v = value;
                  },
                  [&](uint64_t* v) { *v = parseNumber<uint64_t>(p, text, "a whole number, 0 or more"); },
-                 [&](bool* v) { *v = parseBool(p, text); },
-                 [&](std::string* v) {
-                   checkChoice(p, text);
-                   *v = text;
-                 }},
+                 [&](bool* v) { *v = parseBool(p, text); }, [&](std::string* v) { *v = chosen(p, text); }},
       p.target);
 }
 
@@ -91,7 +106,7 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
 }
 
 std::string rangeText(const Parameter& p) {
-  if (!p.choices.empty()) return fmt::format("{}", fmt::join(p.choices, ", "));
+  if (!p.choices.empty()) return choicesText(p, "`");
   const bool low = p.range.min > Range{}.min, high = p.range.max < Range{}.max;
   if (low && high) return fmt::format("{} … {}", p.range.min, p.range.max);
   if (low) return fmt::format("≥ {}", p.range.min);
