@@ -95,6 +95,8 @@ TEST_F(LandmarkText, RefusesWhatMakesNoSense) {
   EXPECT_THAT(damage("2 5"), HasSubstr("the line ends before the bearing"));
   EXPECT_THAT(damage("2 5 nan"), HasSubstr("expected a finite number"));
   EXPECT_THAT(damage("2 5 0 3000000000"), HasSubstr("expected at most 2147483647"));
+  EXPECT_THAT(read("1 5 0 7\n1 6 0 8\n1 6 0.1 7\n2 5 0 7\n", "0 0 0\n").report.damage,
+              testing::ElementsAre(HasSubstr("a.log:3: id 7 stands at this stamp already")));
   const auto controls = read("1 5 0\n", "0 0 0\n1 0\n0.5 0 0\n").report;
   EXPECT_EQ(controls.damaged_lines, 1u);
   EXPECT_THAT(controls.damage.at(0), HasSubstr("controls.txt:2: the line ends before the steering angle"));

@@ -127,6 +127,7 @@ class LandmarkLog {
     if (count > 1) seen = readMeasurement(words, count > 3);
     words.requireEnd();
     if (!stamp_ || stamp_s > *stamp_) begin(stamp_s);
+    if (seen) requireNewId(seen->landmarkID);
     if (seen) observation_.sensedData.push_back(*seen);
     if (seen) ++job_.report.written["landmark measurements"];
   }
@@ -149,6 +150,14 @@ class LandmarkLog {
     if (id > kMostId) throw LineError(fmt::format("id {}: expected at most {}", id, kMostId));
     seen.landmarkID = has_id ? static_cast<int32_t>(id) : mrpt::obs::INVALID_LANDMARK_ID;
     return seen;
+  }
+
+  /** MRPT cannot hold an id twice in one observation. */
+  void requireNewId(int32_t id) const {
+    const auto has_it = [id](const auto& before) { return before.landmarkID == id; };
+    const auto& others = observation_.sensedData;
+    if (id != mrpt::obs::INVALID_LANDMARK_ID && std::any_of(others.begin(), others.end(), has_it))
+      throw LineError(fmt::format("id {} stands at this stamp already", id));
   }
 
   void begin(double stamp_s) {
