@@ -31,10 +31,12 @@ int runSimulate(const SimulateOptions& options) {
   if (!options.overwrite) refuseExisting(files);
   const RawlogForm form = options.actions ? RawlogForm::kActions : RawlogForm::kObservations;
   const std::size_t scans = writeSimulation(scenario, seed, form, files);
-  TerminalReporter(options.quiet)
-      .note(fmt::format("{} scans, {:.1f} s\nlog: {}\ntruth: {}\nodometry: {}", scans,
-                        static_cast<double>(scans - 1) / scenario.scan_rate, files.log, files.truth,
-                        files.odometry));
+  std::string note = fmt::format("{} scans, {:.1f} s\nlog: {}\ntruth: {}\nodometry: {}", scans,
+                                 static_cast<double>(scans - 1) / scenario.scan_rate, files.log, files.truth,
+                                 files.odometry);
+  if (!files.map_ini.empty())
+    note += fmt::format("\nto map it: submap-slam map {} {} -o OUT", files.map_ini, files.log);
+  TerminalReporter(options.quiet).note(note);
   return kSuccess;
 }
 
@@ -50,7 +52,7 @@ void addSimulateCommand(CLI::App& app, int& exit_code) {
       ->add_option(
           "-o,--output", options->prefix,
           "Writes PREFIX.rawlog, PREFIX.truth.tum, PREFIX.odometry.tum and PREFIX.ini; of worlds with "
-          "landmarks also PREFIX.landmarks.csv")
+          "landmarks also PREFIX.landmarks.csv, and PREFIX.map.ini for map")
       ->required()
       ->type_name("PREFIX");
   command->add_option("--seed", options->seed, "Seed of the noise")->capture_default_str()->type_name("N");
@@ -67,7 +69,7 @@ void addSimulateCommand(CLI::App& app, int& exit_code) {
   command->add_flag("--overwrite", options->overwrite, "Replace files that exist")->group("Run");
   command->footer(
       fmt::format("Worlds: {}\n"
-                  "PREFIX.ini lists all keys of [simulation] with the values used.\n"
+                  "PREFIX.ini lists all keys of [simulation] with the values used, for -c of this command.\n"
                   "Example: submap-slam simulate non_convex -o sim1 --seed 3",
                   fmt::join(scenarioNames(), ", ")));
   command->callback([options, &exit_code] { exit_code = runSimulate(*options); });

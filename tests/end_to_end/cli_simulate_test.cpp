@@ -59,10 +59,22 @@ TEST_F(SimulateTest, WritesBothFormsOfRawlog) {
   EXPECT_THAT(succeed({"check", path("b.rawlog")}).out, HasSubstr("40"));
 }
 
+TEST_F(SimulateTest, TellsMapWhatTheCarIsLike) {
+  const Outcome outcome = succeed({"simulate", "landmarks_block", "-o", path("a"), "--set",
+                                   "simulation.max_scans=100", "--set", "simulation.wheel_base=3.5"});
+  EXPECT_THAT(outcome.err, HasSubstr("submap-slam map " + path("a.map.ini") + " " + path("a.rawlog")));
+  succeed({"map", path("a.map.ini"), path("a.rawlog"), "-o", path("out"), "-q"});
+  const std::string effective = content("out/config.ini");
+  for (const char* setting : {"model = ackermann\n", "wheel_base = 3.5\n", "encoder_offset = 0\n",
+                              "sigma_velocity = 0.1\n", "stabilising_xy = 0\n"})
+    EXPECT_THAT(effective, HasSubstr(setting));
+}
+
 TEST_F(SimulateTest, RefusesWhatItCannotDo) {
   const std::string out = path("out");
   expectRefused(run({"simulate", "-o", out}), "world is required");
   expectRefused(run({"simulate", "moon", "-o", out}), "expected one of room, corridor");
+  expectRefused(run({"simulate", "moon", "-o", out}), "landmarks_a, landmarks_b, landmarks_block");
   expectRefused(run(simulate("out", {"--set", "simulation.beam=9"})), "did you mean [simulation] beams?");
   expectRefused(run(simulate("out", {"--set", "simulation.beams=1"})), "beams");
   expectRefused(run(simulate("out", {"-c", path("missing.ini")})), "missing.ini: no such ini file");

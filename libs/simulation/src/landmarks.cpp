@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <mrpt/math/wrap2pi.h>
 #include <submap_slam/core/errors.h>
-#include <submap_slam/core/vehicle_model.h>
 #include <submap_slam/simulation/normal_generator.h>
 
 #include <algorithm>
@@ -34,10 +33,8 @@ TPose2D roundedPose(const TPose2D& pose) {
 /** Measures how a bicycle is driven. */
 class Controls {
  public:
-  Controls(const ControlModel& model, uint64_t seed) : model_(model), normal_(seed, kControlStream) {
-    bicycle_.wheel_base = model.wheel_base;
-    bicycle_.encoder_offset = 0;
-  }
+  Controls(const ControlModel& model, uint64_t seed)
+      : model_(model), bicycle_(vehicleOf(model)), normal_(seed, kControlStream) {}
 
   /** The measured velocities of a step that takes dt (s). */
   TTwist2D measure(const TPose2D& step, double dt) {
@@ -115,6 +112,17 @@ void validate(const ControlModel& control) {
   requireNotNegative(control.sigma_velocity, "sigma_velocity");
   requireNotNegative(control.sigma_steering, "sigma_steering");
   require(control.readings_per_scan >= 1, "readings_per_scan", "at least 1");
+}
+
+VehicleParams vehicleOf(const ControlModel& control) {
+  VehicleParams vehicle;
+  vehicle.model = "ackermann";
+  vehicle.wheel_base = control.wheel_base;
+  vehicle.encoder_offset = 0;
+  vehicle.sigma_velocity = control.sigma_velocity;
+  vehicle.sigma_steering = control.sigma_steering;
+  vehicle.stabilising_xy = vehicle.stabilising_turn = 0;
+  return vehicle;
 }
 
 void validate(const LandmarkSensor& sensor) {

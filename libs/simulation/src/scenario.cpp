@@ -1,5 +1,8 @@
 #include <submap_slam/simulation/scenario.h>
 
+#include <fmt/format.h>
+#include <submap_slam/core/errors.h>
+
 #include <algorithm>
 
 #include "constants.h"
@@ -124,6 +127,10 @@ std::vector<std::string> scenarioNames() {
 Scenario makeScenario(const std::string& world) {
   const auto roads = roadNames();
   if (std::find(roads.begin(), roads.end(), world) != roads.end()) return drivingScenario(world);
+  const auto worlds = worldNames();
+  if (std::find(worlds.begin(), worlds.end(), world) == worlds.end())
+    throw ConfigError(
+        fmt::format("unknown world '{}': expected one of {}", world, fmt::join(scenarioNames(), ", ")));
   if (world == "non_convex") return publishedScenario(nonConvexWorld(), 0.94, 3640, 117);
   if (world == "long_corridors") return publishedScenario(longCorridorsWorld(), 1.15, 2680, 83);
   Scenario scenario;

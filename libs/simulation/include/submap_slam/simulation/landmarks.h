@@ -3,6 +3,7 @@
 
 #include <mrpt/math/TPoint2D.h>
 #include <mrpt/math/TPose2D.h>
+#include <submap_slam/core/vehicle_model.h>
 #include <submap_slam/simulation/path.h>
 #include <submap_slam/simulation/simulate.h>
 
@@ -30,6 +31,9 @@ struct ControlModel {
   double sigma_steering = 0.05235987755982988;  ///< rad
   int readings_per_scan = 8;                    ///< at least 1
 };
+
+/** What a mapper should know of the car: a bicycle with this noise of its readings, and no other. */
+VehicleParams vehicleOf(const ControlModel& control);
 
 /** Measures range and bearing of all landmarks in its field of view, and tells which they are. */
 struct LandmarkSensor {
