@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <submap_slam/core/errors.h>
+#include <submap_slam/rawlog/landmark_log.h>
 #include <tbb/info.h>
 
 #include <charconv>
@@ -123,6 +124,11 @@ std::string takeLog(const std::vector<std::string>& files, ConfigurationOptions&
     target = file;
   }
   if (log.empty()) throw ConfigError("no rawlog given");
+  if (holdsLandmarkSubmaps(log))
+    throw InputError(
+        fmt::format("{}: holds landmark submaps, for 'submap-slam info' and 'join'; expected a rawlog "
+                    "with measurements",
+                    log));
   return log;
 }
 

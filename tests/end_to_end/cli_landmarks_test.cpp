@@ -62,6 +62,41 @@ TEST_F(CliLandmarks, EditsOfGridSubmapsAreRefused) {
   EXPECT_FALSE(std::filesystem::exists(path("out")));
 }
 
+TEST_F(CliLandmarks, InfoDescribesThem) {
+  for (const char* form : {"s.txt", "s.txt.gz", "s.rawlog"}) {
+    const std::string list = succeed({"info", path(form)}).out;
+    EXPECT_EQ(lines(list), 1u + 8u + 1u) << "heading, submaps, sums";
+    EXPECT_THAT(list,
+                HasSubstr("8 landmark submaps, - m, 0 poses, 24 features, dimension at most 9, ids of 8 "
+                          "landmarks"));
+    EXPECT_THAT(list, HasSubstr("0.014 m 0.57°"));
+  }
+}
+
+TEST_F(CliLandmarks, InfoListsWhatIsGoodOfADamagedRawlog) {
+  const std::string whole = contentOf(path("s.rawlog"));
+  writeFile(path("cut.rawlog"), whole.substr(0, whole.size() - 20));
+  const Outcome outcome = run({"info", path("cut.rawlog")});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.out, HasSubstr("7 landmark submaps"));
+  EXPECT_THAT(outcome.err, HasSubstr("cut.rawlog: entry 7"));
+}
+
+TEST_F(CliLandmarks, InfoWritesThemAsText) {
+  succeed({"info", path("s.rawlog"), "--text", path("copy.txt")});
+  EXPECT_EQ(contentOf(path("copy.txt")), contentOf(path("s.txt")));
+  expectRefused(run({"info", path("s.rawlog"), "--text", path("copy.txt")}), "--overwrite");
+  succeed({"info", path("s.rawlog"), "--text", path("copy.txt"), "--overwrite"});
+  expectRefused(run({"info", log("room.rawlog"), "--text", path("room.txt")}), "expected a file of landmark");
+}
+
+TEST_F(CliLandmarks, CommandsForLogsSayWhatTheyAreAndWhoTakesThem) {
+  for (const char* form : {"s.txt", "s.txt.gz", "s.rawlog"}) {
+    expectRefused(run({"check", path(form)}), "holds landmark submaps, for 'submap-slam info' and 'join'");
+    expectRefused(run({"map", path(form), "-o", path("out")}), "holds landmark submaps");
+  }
+}
+
 TEST_F(CliLandmarks, JoinWritesEveryResultAndSaysWhere) {
   const Outcome outcome = succeed({"join", path("s.txt"), "-o", path("out")});
   EXPECT_THAT(outcome.err, HasSubstr("map: " + path("out/map.png")));

@@ -79,6 +79,31 @@ TEST_F(LandmarkLog, TextIsReadBackToTheSameBitsPackedOrNot) {
   EXPECT_THROW(writeLandmarkText("/nowhere/s.txt", submaps), OutputError);
 }
 
+TEST_F(LandmarkLog, CommentsMayStandBeforeSubmaps) {
+  const std::string two = std::string(kOneFeature) + "# the second\n" + kOneFeature;
+  const std::string second = "MAP 1 5\n", text = "\n# MAP of a park\n#\n" + two;
+  const auto at = text.rfind(second);
+  const std::string file =
+      temp_.write("c.txt", text.substr(0, at) + "MAP 2 5\n" + text.substr(at + second.size()));
+  EXPECT_TRUE(holdsLandmarkSubmaps(file));
+  EXPECT_EQ(readLandmarkSubmaps(file).size(), 2u);
+  EXPECT_FALSE(holdsLandmarkSubmaps(temp_.write("d.txt", "# MAP 1 5\nMAPS\n")));
+}
+
+TEST_F(LandmarkLog, IdsInTextAreAboveZeroAndEqualOnlyWhereTheyAreKnown) {
+  const std::string copy = temp_.file("copy.txt");
+  auto a = read(kOneFeature).front(), b = read(kOneFeature).front();
+  a->features[0].id = 0;
+  writeLandmarkText(copy, {a, b});
+  EXPECT_EQ(readLandmarkSubmaps(copy)[0]->features[0].id, 1u) << "0 marks the end pose";
+  EXPECT_EQ(readLandmarkSubmaps(copy)[1]->features[0].id, 8u);
+  a->ids_known = b->ids_known = false;
+  b->features[0].id = 0;
+  writeLandmarkText(copy, {a, b});
+  EXPECT_EQ(readLandmarkSubmaps(copy)[0]->features[0].id, 1u);
+  EXPECT_EQ(readLandmarkSubmaps(copy)[1]->features[0].id, 2u);
+}
+
 TEST_F(LandmarkLog, ReadsRawlogsOfLandmarkSubmaps) {
   auto submaps = read(kOneFeature);
   submaps[0]->features[0].hits = 6;
@@ -91,7 +116,17 @@ TEST_F(LandmarkLog, ReadsRawlogsOfLandmarkSubmaps) {
   EXPECT_EQ(copy[1]->id, 1u) << "the position in the file";
   EXPECT_EQ(copy[1]->features[0].hits, 6u);
 
+  for (const std::size_t length : {twice.size() + twice.size() / 2, 2 * twice.size() - 4}) {
+    const std::string part = temp_.write("part.rawlog", (twice + twice).substr(0, length));
+    const auto recovered = recoverLandmarkSubmaps(part);
+    EXPECT_EQ(recovered.submaps.size(), 1u) << "the good one before the cut";
+    EXPECT_THAT(recovered.damage, HasSubstr("part.rawlog: entry 1"));
+    EXPECT_THROW(readLandmarkSubmaps(part), InputError);
+  }
+  EXPECT_EQ(recoverLandmarkSubmaps(file).damage, "");
+
   const std::string cut = temp_.write("cut.rawlog", twice.substr(0, twice.size() / 2));
+  EXPECT_THROW(recoverLandmarkSubmaps(cut), InputError) << "nothing of it is good";
   EXPECT_THROW(readLandmarkSubmaps(cut), InputError);
   submaps[0]->covariance(1, 1) = -1;
   const auto bad = gzipMember(*submaps[0]);

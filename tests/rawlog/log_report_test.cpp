@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "../support/temp_folder.h"
 #include "log_builder.h"
 
@@ -23,6 +25,7 @@ TEST(LogReport, CountsPathGapsAndJumps) {
   EXPECT_NEAR(report.path_length_m, 5.5, 1e-9);
   EXPECT_NEAR(report.largest_step_m, 5.0, 1e-9);
   EXPECT_NEAR(report.largest_step_rad, 3.0, 1e-9);
+  EXPECT_EQ(report.long_steps, 2u);
   EXPECT_EQ(report.odometry_jumps, 2u);
   EXPECT_NEAR(report.largest_gap_s, 7.0, 1e-6);
   EXPECT_NEAR(report.duration_s(), 9.0, 1e-6);
@@ -71,6 +74,46 @@ TEST(LogReport, MostSevereFindingComesFirst) {
   EXPECT_EQ(report.findings[0].severity, Severity::kError);
   EXPECT_EQ(report.findings[1].severity, Severity::kWarning);
   EXPECT_EQ(report.findings[2].severity, Severity::kInfo);
+}
+
+TEST(LogReport, AFastVehicleDoesNotJump) {
+  LogBuilder fast, resets;
+  double x = 0;
+  for (int k = 0; k < 100; ++k) {  // speeds up and down between 1 and 9 m/s, five scans a second
+    x += 0.2 * (5 - 4 * std::cos(0.06 * k));
+    fast.add(odometryAt(0.2 * k, x, 0, 0)).add(scanAt(0.2 * k));
+    resets.add(odometryAt(0.2 * k, k < 50 ? x : x - 20, 0, 0)).add(scanAt(0.2 * k));
+  }
+  EXPECT_GT(reportOf(fast).long_steps, 40u);
+  EXPECT_EQ(reportOf(fast).odometry_jumps, 0u);
+  EXPECT_GE(reportOf(resets).odometry_jumps, 1u);
+}
+
+TEST(LogReport, SaysWhatTheLackOfOdometryMeansForEachMap) {
+  LogReport report;
+  report.frames = 2;
+  const auto text = [&] {
+    report.findings = assess(report);
+    return report.asText();
+  };
+  report.landmark_sensors["TREES"].observations = 2;
+  EXPECT_THAT(text(), HasSubstr("taken to go on as before"));
+  EXPECT_THAT(text(), Not(HasSubstr("scan matching")));
+  report.scanners["LASER"].scans = 2;
+  EXPECT_THAT(text(), HasSubstr("scan matching alone"));
+  EXPECT_THAT(text(), HasSubstr("taken to go on as before"));
+  report.landmark_sensors.clear();
+  EXPECT_THAT(text(), Not(HasSubstr("taken to go on as before")));
+}
+
+TEST(LogReport, SaysThatAVehicleLacksItsVelocities) {
+  LogBuilder log;
+  log.add(scanAt(0)).add(scanAt(1));
+  TempFolder temp;
+  ReaderParams params;
+  params.vehicle.model = "ackermann";
+  EXPECT_THAT(checkLog(log.saveGz(temp.file("a.rawlog")), params).asText(),
+              HasSubstr("warning: [vehicle] model = ackermann needs velocities"));
 }
 
 TEST(LogReport, SparseLogIsNotBlamedForJumps) {

@@ -3,6 +3,8 @@
 #include <submap_slam/rawlog/landmark_log.h>
 #include <zlib.h>
 
+#include <sstream>
+
 #include <submap_slam/rawlog/byte_source.h>
 #include "landmark_text.h"
 #include "object_stream.h"
@@ -10,11 +12,13 @@
 namespace submap_slam {
 namespace {
 
+/** Behind blank lines and comments. */
 bool beginsAsText(const std::string& file) {
-  ByteSource source(file);
-  const std::string front = source.peek(256);
-  const std::size_t word = front.find_first_not_of(" \t\r\n");
-  return word != std::string::npos && front.compare(word, 3, "MAP") == 0;
+  constexpr std::size_t kFront = 1 << 14;  // room for comments
+  std::istringstream front(ByteSource(file).peek(kFront));
+  std::string word;
+  while (front >> word && word.front() == '#') std::getline(front, word);
+  return word == "MAP";
 }
 
 bool beginsAsRawlog(const std::string& file) {
@@ -42,35 +46,59 @@ LandmarkSubmaps readText(const std::string& file) {
   return submaps;
 }
 
-LandmarkSubmaps readRawlog(const std::string& file) {
-  ObjectStream stream(file);
-  LandmarkSubmaps submaps;
-  while (const auto object = stream.next()) {
-    const auto entry = [&] { return fmt::format("{}: entry {}", file, stream.entries() - 1); };
-    auto submap = std::dynamic_pointer_cast<LandmarkSubmap>(object);
-    if (!submap)
-      throw InputError(fmt::format("{} is a {}, expected a LandmarkSubmap", entry(),
-                                   object->GetRuntimeClass()->className));
-    try {
-      requireUsable(*submap);
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("{}: {}", entry(), error.what()));
-    }
-    submap->id = static_cast<uint32_t>(submaps.size());
-    submaps.push_back(std::move(submap));
-  }
+/** The next submap of a rawlog, or null at its end. Throws InputError naming the entry. */
+LandmarkSubmap::Ptr nextOf(ObjectStream& stream, const std::string& file) {
+  const auto object = stream.next();
   if (stream.damage()) throw InputError(stream.damage()->text);
-  return submaps;
+  if (!object) return nullptr;
+  const std::string entry = fmt::format("{}: entry {}", file, stream.entries() - 1);
+  auto submap = std::dynamic_pointer_cast<LandmarkSubmap>(object);
+  if (!submap)
+    throw InputError(
+        fmt::format("{} is a {}, expected a LandmarkSubmap", entry, object->GetRuntimeClass()->className));
+  if (stream.cutBehindLast())
+    throw InputError(fmt::format("{}: its gzip member is incomplete or corrupt", entry));
+  try {
+    requireUsable(*submap);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", entry, error.what()));
+  }
+  return submap;
+}
+
+RecoveredLandmarkSubmaps recoverRawlog(const std::string& file) {
+  ObjectStream stream(file);
+  RecoveredLandmarkSubmaps read;
+  try {
+    while (auto submap = nextOf(stream, file)) {
+      submap->id = static_cast<uint32_t>(read.submaps.size());
+      read.submaps.push_back(std::move(submap));
+    }
+  } catch (const InputError& error) {
+    read.damage = error.what();
+  }
+  return read;
 }
 
 }  // namespace
 
 bool holdsLandmarkSubmaps(const std::string& file) { return beginsAsText(file) || beginsAsRawlog(file); }
 
+RecoveredLandmarkSubmaps recoverLandmarkSubmaps(const std::string& file) {
+  RecoveredLandmarkSubmaps read;
+  if (beginsAsText(file))
+    read.submaps = readText(file);
+  else
+    read = recoverRawlog(file);
+  if (read.submaps.empty())
+    throw InputError(read.damage.empty() ? fmt::format("{}: holds no submaps", file) : read.damage);
+  return read;
+}
+
 LandmarkSubmaps readLandmarkSubmaps(const std::string& file) {
-  LandmarkSubmaps submaps = beginsAsText(file) ? readText(file) : readRawlog(file);
-  if (submaps.empty()) throw InputError(fmt::format("{}: holds no submaps", file));
-  return submaps;
+  RecoveredLandmarkSubmaps read = recoverLandmarkSubmaps(file);
+  if (!read.damage.empty()) throw InputError(read.damage);
+  return std::move(read.submaps);
 }
 
 void writeLandmarkText(const std::string& file, const LandmarkSubmaps& submaps) {

@@ -72,7 +72,7 @@ void LandmarkText::requireEndOfLine(const std::string& expected) {
 
 LandmarkSubmap::Ptr LandmarkText::next() {
   std::string_view heading;
-  while (heading.empty()) {
+  while (heading.empty() || heading.front() == '#') {
     if (!readLine()) return nullptr;
     heading = word();
   }
@@ -138,13 +138,39 @@ void LandmarkText::readCovariance(LandmarkSubmap& submap, uint32_t dimension) {
   }
 }
 
+namespace {
+
+/** The ids that features have in text. */
+class TextIds {
+ public:
+  explicit TextIds(const LandmarkSubmaps& submaps) {
+    for (const auto& submap : submaps) {
+      known_ = known_ && submap->ids_known;
+      for (const auto& feature : submap->features) raise_ = raise_ || feature.id == 0;
+    }
+  }
+
+  /** To be called once for each feature, in their order. */
+  uint32_t next(const SubmapFeature& feature) { return known_ ? feature.id + (raise_ ? 1 : 0) : ++last_; }
+
+ private:
+  bool known_ = true, raise_ = false;
+  uint32_t last_ = 0;
+};
+
+}  // namespace
+
 std::string landmarkText(const LandmarkSubmaps& submaps) {
+  TextIds ids(submaps);
   std::string text;
   for (std::size_t k = 0; k < submaps.size(); ++k) {
     const LandmarkSubmap& submap = *submaps[k];
     const auto& end = submap.end_pose;
     text += fmt::format("MAP {} {}\n0 {}\n0 {}\n0 {}\n", k + 1, submap.dimension(), end.x, end.y, end.phi);
-    for (const auto& f : submap.features) text += fmt::format("{} {}\n{} {}\n", f.id, f.x, f.id, f.y);
+    for (const auto& f : submap.features) {
+      const uint32_t id = ids.next(f);
+      text += fmt::format("{} {}\n{} {}\n", id, f.x, id, f.y);
+    }
     for (std::size_t row = 0; row < submap.dimension(); ++row)
       for (std::size_t column = 0; column <= row; ++column)
         text += fmt::format("{}{}", submap.covariance(row, column), column == row ? "\n" : " ");

@@ -90,23 +90,25 @@ void assessStamps(const LogReport& r, Findings& add) {
 
 void assessOdometry(const LogReport& r, Findings& add) {
   const uint64_t without = r.frames - r.frames_with_odometry;
-  add.add(r.frames > 0 && r.frames_with_odometry == 0, Severity::kWarning,
-          "There is no odometry; frames are tracked by scan matching alone, which long corridors and fast "
-          "turns can "
-          "break.");
+  const bool no_odometry = r.frames > 0 && r.frames_with_odometry == 0;
+  add.add(no_odometry && !r.scanners.empty(), Severity::kWarning,
+          "There is no odometry; grids are tracked by scan matching alone, which long corridors and fast "
+          "turns can break.");
+  add.add(no_odometry && (r.scanners.empty() || !r.landmark_sensors.empty()), Severity::kWarning,
+          "There is no odometry; for landmarks the robot is taken to go on as before, with wide uncertainty, "
+          "from one observation to the next, which turns and places with few landmarks can break.");
   add.add(r.frames_with_odometry > 0 && without > 0, Severity::kWarning,
           "{} of {} frames have no odometry reading within {} s.", without, r.frames,
           OdometryTrack::kHoldSeconds);
-  const bool sparse = share(r.odometry_jumps, r.frames) > kSparseShare;
+  const bool sparse = share(r.long_steps, r.frames) > kSparseShare;
   add.add(sparse, Severity::kInfo,
           "The log is sparse: {} of {} steps between frames are longer than 1 m or 45 deg; matching needs a "
           "wide search.",
-          r.odometry_jumps, r.frames);
+          r.long_steps, r.frames);
   add.add(
       !sparse && r.odometry_jumps > 0, Severity::kWarning,
-      "Odometry jumps by more than 1 m or 45 deg at {} frames (at most {:.2f} m, {:.0f} deg): lost data or a "
-      "reset of "
-      "the odometry.",
+      "Odometry jumps at {} frames, by more than 1 m or 45 deg beyond the speed before (the largest step is "
+      "{:.2f} m, {:.0f} deg): lost data or a reset of the odometry.",
       r.odometry_jumps, r.largest_step_m, mrpt::RAD2DEG(r.largest_step_rad));
   add.add(r.matched_increments > 0, Severity::kWarning,
           "{} movement increments were made by scan matching, not odometry; their errors repeat those of the "

@@ -29,7 +29,21 @@ bool sameGeometry(const mrpt::obs::CObservation2DRangeScan& a, const mrpt::obs::
          a.rightToLeft == b.rightToLeft && samePose(a.sensorPose.asTPose(), b.sensorPose.asTPose());
 }
 
+/** Whether a step is no movement like those before; the step then counts to these. */
+bool isJump(RecentRate& rate, double step, double seconds, double threshold) {
+  const double largest = threshold + 2 * rate.over(seconds);
+  rate.add(std::min(step, largest), seconds);
+  return step > largest;
+}
+
 }  // namespace
+
+void RecentRate::add(double change, double seconds) {
+  constexpr double kMemory_s = 1;
+  const double left = std::exp(-seconds / kMemory_s);
+  change_ = left * change_ + change;
+  time_s_ = left * time_s_ + seconds;
+}
 
 void LogStatistics::add(Frame& frame, double min_range, LogReport& report) {
   addStamp(frame, report);
@@ -67,17 +81,23 @@ void LogStatistics::addStamp(const Frame& frame, LogReport& report) {
 void LogStatistics::addOdometry(const Frame& frame, LogReport& report) {
   if (frame.odometry) {
     ++report.frames_with_odometry;
-    if (last_odometry_) {
-      const double step_m =
-          std::hypot(frame.odometry->x - last_odometry_->x, frame.odometry->y - last_odometry_->y);
-      const double step_rad = std::abs(mrpt::math::wrapToPi(frame.odometry->phi - last_odometry_->phi));
-      report.path_length_m += step_m;
-      report.largest_step_m = std::max(report.largest_step_m, step_m);
-      report.largest_step_rad = std::max(report.largest_step_rad, step_rad);
-      if (step_m > kJump_m || step_rad > kJump_rad) ++report.odometry_jumps;
-    }
+    if (last_odometry_) addStep(*last_odometry_, frame, report);
   }
   last_odometry_ = frame.odometry;
+  last_odometry_stamp_ = frame.stamp;
+}
+
+void LogStatistics::addStep(const mrpt::math::TPose2D& from, const Frame& to, LogReport& report) {
+  const double step_m = std::hypot(to.odometry->x - from.x, to.odometry->y - from.y);
+  const double step_rad = std::abs(mrpt::math::wrapToPi(to.odometry->phi - from.phi));
+  const double seconds = std::max(0.0, secondsBetween(last_odometry_stamp_, to.stamp));
+  report.path_length_m += step_m;
+  report.largest_step_m = std::max(report.largest_step_m, step_m);
+  report.largest_step_rad = std::max(report.largest_step_rad, step_rad);
+  if (step_m > kJump_m || step_rad > kJump_rad) ++report.long_steps;
+  const bool leaps = isJump(speed_, step_m, seconds, kJump_m);
+  const bool spins = isJump(turn_rate_, step_rad, seconds, kJump_rad);
+  if (leaps || spins) ++report.odometry_jumps;
 }
 
 void LogStatistics::addScan(const mrpt::obs::CObservation2DRangeScan& scan, ScannerReport& scanner) {

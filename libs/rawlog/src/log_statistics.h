@@ -9,6 +9,18 @@
 
 namespace submap_slam {
 
+/** How fast something changed in the last second or so. */
+class RecentRate {
+ public:
+  /** The change that so many seconds at this rate bring. */
+  double over(double seconds) const { return time_s_ > 0 ? change_ / time_s_ * seconds : 0; }
+
+  void add(double change, double seconds);
+
+ private:
+  double change_ = 0, time_s_ = 0;  ///< faded sums
+};
+
 /** Adds delivered frames to the counts of a report. */
 class LogStatistics {
  public:
@@ -18,11 +30,13 @@ class LogStatistics {
  private:
   void addStamp(const Frame& frame, LogReport& report);
   void addOdometry(const Frame& frame, LogReport& report);
+  void addStep(const mrpt::math::TPose2D& from, const Frame& to, LogReport& report);
   void addScan(const mrpt::obs::CObservation2DRangeScan& scan, ScannerReport& scanner);
   void addLandmarks(const LandmarkScan& scan, LandmarkSensorReport& sensor);
 
   std::optional<mrpt::math::TPose2D> last_odometry_;
-  mrpt::Clock::time_point last_stamp_{};
+  mrpt::Clock::time_point last_stamp_{}, last_odometry_stamp_{};
+  RecentRate speed_, turn_rate_;
   std::map<std::string, mrpt::obs::CObservation2DRangeScan::Ptr> last_scan_;
 };
 

@@ -49,7 +49,8 @@ std::string whyNoFrames(const LogReport& report, const ReaderParams& params) {
   if (report.file_bytes == 0) return "the file is empty, expected a rawlog";
   if (report.entries == 0) return "holds no object, expected a rawlog";
   if (report.classes.count("submap_slam::GridSubmap") > 0)
-    return fmt::format("holds submaps, expected a rawlog with a {}", wanted(params));
+    return fmt::format("holds submaps, for 'submap-slam info' and 'join'; expected a rawlog with a {}",
+                       wanted(params));
   if (!params.from.empty() || !params.to.empty())
     return fmt::format("no usable {} from '{}' to '{}'; {} entries were read ({})", wanted(params),
                        params.from, params.to, report.entries, contentOf(report));

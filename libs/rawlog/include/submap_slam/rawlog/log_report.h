@@ -92,7 +92,8 @@ struct LogReport {
 
   uint64_t odometry_readings = 0;  ///< CObservationOdometry, or increments in actions
   uint64_t frames_with_odometry = 0;
-  uint64_t odometry_jumps = 0;  ///< steps of more than 1 m or 45° between consecutive frames
+  uint64_t long_steps = 0;      ///< steps of more than 1 m or 45° between consecutive frames
+  uint64_t odometry_jumps = 0;  ///< steps of more than 1 m or 45° beyond twice what the recent speed explains
   double largest_step_m = 0, largest_step_rad = 0;
   double path_length_m = 0;         ///< by odometry
   uint64_t matched_increments = 0;  ///< increments in actions that scan matching made, not odometry
