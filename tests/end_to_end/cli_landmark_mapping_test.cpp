@@ -112,6 +112,21 @@ TEST_F(CliLandmarkMapping, MapsALogWithIds) {
   EXPECT_FALSE(readLandmarkSubmaps(path("out/landmark_submaps.rawlog"))[0]->nodes.empty());
 }
 
+TEST_F(CliLandmarkMapping, IniFilesOfTheProductAreTaken) {
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(SUBMAP_SLAM_SOURCE_DIR "/ini")) {
+    if (entry.path().extension() != ".ini") continue;
+    succeed({"check", entry.path().string(), log("landmarks.rawlog")});
+    ++files;
+  }
+  EXPECT_GE(files, 3u);
+  succeed(map("positions.rawlog", "out", {"-c", SUBMAP_SLAM_SOURCE_DIR "/ini/landmarks.ini"}));
+  EXPECT_EQ(metrics("out")["landmarks"], 24);
+  succeed(map("positions.rawlog", "defaults", {"--set", "mapping.maps=landmarks"}));
+  EXPECT_EQ(contentOf(path("out/config.ini")), contentOf(path("defaults/config.ini")))
+      << "all else in it is as in default.ini";
+}
+
 TEST_F(CliLandmarkMapping, FindsTheLandmarksAgainWithoutIds) {
   succeed(map("positions.rawlog", "out"));
   const auto m = metrics("out");
