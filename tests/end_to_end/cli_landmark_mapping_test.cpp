@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "cli_fixture.h"
 
@@ -24,6 +25,7 @@ using mrpt::math::TPose2D;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Key;
+using ::testing::StartsWith;
 
 constexpr int kFrames = 240;
 constexpr double kRadius = 15, kRange = 12;
@@ -164,8 +166,11 @@ TEST_F(CliLandmarkMapping, ASingleMapIsOneSubmap) {
   }
 }
 
-/** The example loop with landmarks in a lattice of 6 m, measured from the true poses without noise. */
+/** The example loop with landmarks in a lattice of 6 m, measured from the true poses with the noise that is
+ * stated. */
 void addLandmarks(const std::string& log, const std::string& truth, const std::string& out) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> range_noise(0, 0.05), bearing_noise(0, 0.01);
   std::ifstream poses(truth);
   mrpt::io::CFileGZInputStream from(log);
   mrpt::io::CFileGZOutputStream to(out);
@@ -188,8 +193,8 @@ void addLandmarks(const std::string& log, const std::string& truth, const std::s
         const TPoint2D p = robot.inverseComposePoint(TPoint2D(6.0 * i, 6.0 * j + 0.4 * i));
         if (std::hypot(p.x, p.y) > 8 || p.x < 0) continue;
         mrpt::obs::CObservationBearingRange::TMeasurement m;
-        m.range = static_cast<float>(std::hypot(p.x, p.y));
-        m.yaw = static_cast<float>(std::atan2(p.y, p.x));
+        m.range = static_cast<float>(std::hypot(p.x, p.y) + range_noise(random));
+        m.yaw = static_cast<float>(std::atan2(p.y, p.x) + bearing_noise(random));
         m.pitch = 0;
         m.landmarkID = mrpt::obs::INVALID_LANDMARK_ID;
         seen.sensedData.push_back(m);
@@ -205,6 +210,8 @@ TEST_F(CliLandmarkMapping, GridsAndLandmarksAlongOnePathAgree) {
   for (const char* name : {"map.png", "trajectory.tum", "submaps.rawlog", "landmark_map.png", "landmarks.csv",
                            "landmark_trajectory.tum", "landmark_submaps.rawlog"})
     EXPECT_THAT(results, Contains(Key(name)));
+  EXPECT_THAT(results.at("frames.csv"), StartsWith("submap,")) << "of the grids";
+  EXPECT_THAT(results.at("landmark_frames.csv"), StartsWith("stamp,"));
   const auto m = metrics("out");
   EXPECT_EQ(m["submaps"], m["landmark_submaps"]) << "the same stretches";
   EXPECT_EQ(lines(results.at("trajectory.tum")), lines(results.at("landmark_trajectory.tum")));

@@ -1,6 +1,5 @@
 /** Where landmark submaps begin and end, and what is in them. */
 #include <gtest/gtest.h>
-#include <mrpt/poses/CPose2D.h>
 #include <submap_slam/core/errors.h>
 #include <submap_slam/landmarks/landmark_mapper.h>
 #include <Eigen/Core>
@@ -111,31 +110,70 @@ TEST(LandmarkMapper, GoesOnWithoutOdometry) {
   EXPECT_NEAR(submaps.back()->end_pose.x, drive.path.back().x, 0.5);
 }
 
-TEST(LandmarkMapper, FollowsThePathOfAGrid) {
-  const Drive drive = simulateDrive({});
+/** The frames of a stretch in two, as a grid mapper would cut them. */
+std::vector<GridSubmap::Ptr> twoGrids(const Stretch& stretch, std::size_t second) {
   std::vector<GridSubmap::Ptr> grids{GridSubmap::Create(), GridSubmap::Create()};
-  const std::size_t half = drive.stretch.frames.size() / 2;
-  for (std::size_t k = 0; k < drive.stretch.frames.size(); ++k) {
-    const std::size_t g = k < half ? 0 : 1;
-    const auto start = drive.path[g == 0 ? 0 : half];
-    SubmapNode node;
-    node.stamp = drive.stretch.frames[k].stamp;
-    node.pose = drive.path[k] - start;
-    grids[g]->nodes.push_back(node);
-    grids[g]->end_pose.mean = mrpt::poses::CPose2D(drive.path[g == 0 ? half : k] - start);
-  }
-  for (const auto& grid : grids) {
-    grid->end_pose.cov.setZero();
-    grid->end_pose.cov.asEigen().diagonal() << 1e-6, 1e-6, 1e-8;
-  }
+  grids[0]->nodes.resize(second - stretch.warm_up);
   grids[0]->has_successor = true;
-  const auto submaps = LandmarkMapper({}, 1).mapAlong(drive.stretch, grids);
-  ASSERT_EQ(submaps.size(), 2u);
-  for (std::size_t g = 0; g < 2; ++g) {
-    EXPECT_EQ(submaps[g]->nodes.size(), grids[g]->nodes.size());
-    EXPECT_NEAR(submaps[g]->end_pose.x, grids[g]->end_pose.mean.x(), 5e-3);
-    EXPECT_NEAR(submaps[g]->end_pose.y, grids[g]->end_pose.mean.y(), 5e-3);
+  grids[1]->nodes.resize(stretch.warm_up + stretch.ownFrames() - second);
+  grids[1]->has_successor = !stretch.last;
+  return grids;
+}
+
+TEST(LandmarkMapper, SharesTheFramesOfGrids) {
+  for (const bool last : {false, true}) {
+    Drive drive = simulateDrive({});
+    const auto& frames = drive.stretch.frames;
+    drive.stretch.warm_up = 3;
+    drive.stretch.last = last;
+    const std::size_t half = frames.size() / 2;
+    const auto grids = twoGrids(drive.stretch, half);
+    const auto submaps = LandmarkMapper({}, 1).mapBeside(grids, drive.stretch);
+    ASSERT_EQ(submaps.size(), 2u);
+    for (std::size_t g = 0; g < 2; ++g) EXPECT_EQ(submaps[g]->nodes.size(), grids[g]->nodes.size());
+    EXPECT_EQ(submaps[0]->timestamp, frames[3].stamp);
+    EXPECT_EQ(submaps[0]->end_stamp, frames[half].stamp);
+    EXPECT_EQ(submaps[1]->timestamp, frames[half].stamp);
+    EXPECT_EQ(submaps[1]->end_stamp, frames.back().stamp);
+    const auto wanted = drive.path[half] - drive.path[3];
+    EXPECT_NEAR(submaps[0]->end_pose.x, wanted.x, 0.3);
+    EXPECT_NEAR(submaps[0]->end_pose.y, wanted.y, 0.3);
   }
+}
+
+double worstError(const Stretch& stretch, const std::vector<mrpt::math::TPose2D>& path) {
+  double worst = 0;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const auto wanted = path[i] - path[0], found = *stretch.frames[i].odometry - *stretch.frames[0].odometry;
+    worst = std::max(worst, std::hypot(found.x - wanted.x, found.y - wanted.y));
+  }
+  return worst;
+}
+
+TEST(LandmarkMapper, CorrectsOdometryOfAllFrames) {
+  for (const bool last : {false, true}) {
+    Drive drive = simulateDrive({});
+    drive.stretch.last = last;
+    drive.stretch.warm_up = 3;
+    mrpt::math::TPose2D drift;  // to the side
+    for (Frame& frame : drive.stretch.frames) {
+      drift.y += 0.05;
+      frame.odometry = *frame.odometry + drift;
+    }
+    const Stretch corrected = LandmarkMapper(withMostFeatures(8), 1).withCorrectedOdometry(drive.stretch);
+    EXPECT_EQ(corrected.warm_up, 3u);
+    EXPECT_EQ(corrected.last, last);
+    EXPECT_GT(worstError(drive.stretch, drive.path), 1.5);
+    EXPECT_LT(worstError(corrected, drive.path), 0.5);
+  }
+}
+
+TEST(LandmarkMapper, InventsNoOdometry) {
+  Drive drive = simulateDrive({});
+  drive.stretch.frames[10].odometry.reset();
+  const Stretch corrected = LandmarkMapper({}, 1).withCorrectedOdometry(drive.stretch);
+  for (std::size_t i = 0; i < corrected.frames.size(); ++i)
+    EXPECT_EQ(corrected.frames[i].odometry.has_value(), i != 10);
 }
 
 TEST(LandmarkMapper, RefusesGatesThatContradict) {

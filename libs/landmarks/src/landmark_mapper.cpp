@@ -14,6 +14,7 @@ namespace submap_slam {
 namespace {
 
 using namespace landmark_mapping;
+using mrpt::math::TPose2D;
 
 /** When the filter itself closes a submap. */
 class ClosingRules {
@@ -88,7 +89,7 @@ bool idsAreKnown(const std::vector<Frame>& frames, const Span& span) {
   return true;
 }
 
-mrpt::math::TPose2D toTPose(const Pose& pose) { return {pose[0], pose[1], wrapped(pose[2])}; }
+TPose2D toTPose(const Pose& pose) { return {pose[0], pose[1], wrapped(pose[2])}; }
 
 LandmarkSubmap::Ptr assemble(const std::vector<Frame>& frames, const Span& span,
                              const LandmarkEstimate& estimate, bool known_ids) {
@@ -132,15 +133,31 @@ LandmarkSubmaps LandmarkMapper::map(const Stretch& stretch) const {
   }
 }
 
-LandmarkSubmaps LandmarkMapper::mapAlong(const Stretch& stretch,
-                                         const std::vector<GridSubmap::Ptr>& grids) const {
+Stretch LandmarkMapper::withCorrectedOdometry(const Stretch& stretch) const {
+  Stretch corrected = stretch;
+  corrected.warm_up = 0;
+  std::vector<TPose2D> path;  // T_odom_robot of all frames, the first at the origin
+  TPose2D T_odom_s;
+  for (const auto& submap : map(corrected)) {
+    for (const LandmarkNode& node : submap->nodes) path.push_back(T_odom_s + node.pose);
+    T_odom_s = T_odom_s + submap->end_pose;
+  }
+  path.push_back(T_odom_s);  // of the frame that the next stretch begins with
+  for (std::size_t i = 0; i < corrected.frames.size(); ++i)
+    if (auto& odometry = corrected.frames[i].odometry) odometry = path[i];
+  corrected.warm_up = stretch.warm_up;
+  return corrected;
+}
+
+LandmarkSubmaps LandmarkMapper::mapBeside(const std::vector<GridSubmap::Ptr>& grids,
+                                          const Stretch& stretch) const {
   LandmarkSubmaps submaps;
   std::size_t first = stretch.warm_up;
   for (const auto& grid : grids) {
-    const std::vector<Frame> frames = framesAlong(stretch, first, *grid);
-    Span span{0, frames.size() - 1, grid->has_successor};
-    submaps.push_back(build(frames, params_, seed_, false, span));
-    first += grid->nodes.size();
+    const std::size_t next = first + grid->nodes.size();
+    Span span{first, grid->has_successor ? next : next - 1, grid->has_successor};
+    submaps.push_back(build(stretch.frames, params_, seed_, false, span));
+    first = next;
   }
   return submaps;
 }

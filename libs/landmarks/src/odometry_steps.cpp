@@ -32,29 +32,4 @@ MotionStep OdometrySteps::between(const Frame& before, const Frame& now) {
           now.motion_covariance ? Eigen::Matrix3d(now.motion_covariance->asEigen()) : covarianceOf(last_)};
 }
 
-std::vector<Frame> framesAlong(const Stretch& stretch, std::size_t first, const GridSubmap& grid) {
-  std::vector<Frame> frames;
-  for (std::size_t k = 0; k < grid.nodes.size(); ++k) {
-    frames.push_back(stretch.frames[first + k]);
-    frames.back().odometry = grid.nodes[k].pose;
-  }
-  if (grid.has_successor) {
-    frames.push_back(stretch.frames[first + grid.nodes.size()]);
-    frames.back().odometry = grid.end_pose.mean.asTPose();
-  }
-  std::vector<double> lengths(frames.size(), 0);
-  double sum = 0;
-  for (std::size_t k = 1; k < frames.size(); ++k) {
-    const auto step = *frames[k].odometry - *frames[k - 1].odometry;
-    sum += lengths[k] = std::hypot(step.x, step.y) + std::abs(step.phi);
-  }
-  const Eigen::Vector3d variances = grid.end_pose.cov.asEigen().diagonal();
-  for (std::size_t k = 1; k < frames.size(); ++k) {
-    mrpt::math::CMatrixDouble33 covariance;
-    covariance.asEigen() = variances.asDiagonal() * (sum > 0 ? lengths[k] / sum : 0.0);
-    frames[k].motion_covariance = covariance;
-  }
-  return frames;
-}
-
 }  // namespace submap_slam::landmark_mapping

@@ -1,10 +1,7 @@
 #pragma once
 
-#include <submap_slam/core/grid_submap.h>
-#include <submap_slam/core/local_mapper.h>
+#include <submap_slam/core/frame.h>
 #include <submap_slam/landmarks/landmark_filter.h>
-
-#include <vector>
 
 namespace submap_slam::landmark_mapping {
 
@@ -23,10 +20,5 @@ class OdometrySteps {
   LandmarkMotionParams params_;
   Pose last_ = Pose::Zero();
 };
-
-/** The frames of a grid submap, and the one where it ends if it has a successor, with the grid's path in the
- * place of odometry. The covariance of its end is spread over the steps by their length.
- * @param first position of the submap's first frame in the stretch */
-std::vector<Frame> framesAlong(const Stretch& stretch, std::size_t first, const GridSubmap& grid);
 
 }  // namespace submap_slam::landmark_mapping

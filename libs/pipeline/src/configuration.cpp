@@ -29,7 +29,7 @@ void describeSubmapParameters(ParameterTable& table, Configuration& config) {
   describe(table, config.reader);
   table.section("mapping", "Which submaps are built from a log");
   table.add("maps", config.maps,
-            "Occupancy grids, landmarks, or both along one path; auto: grids where the log has laser scans, "
+            "Occupancy grids, landmarks, or both in the same submaps; auto: grids where the log has laser scans, "
             "else landmarks",
             {"auto", "grid", "landmarks", "grid, landmarks"});
   describe(table, config.stretches);

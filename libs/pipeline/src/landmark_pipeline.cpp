@@ -83,11 +83,28 @@ void checkConsistency(const LandmarkSubmaps& submaps, const JoinedLandmarks& joi
                   joined.association_known ? "ids may be wrong" : "landmarks may be matched wrongly"));
 }
 
-void addPathDifference(const Trajectory& grid_path, const Trajectory& path, Metrics& metrics) {
+/** m */
+double lengthOf(const Trajectory& path) {
+  double length = 0;
+  for (std::size_t k = 1; k < path.size(); ++k)
+    length += std::hypot(path[k].pose.x - path[k - 1].pose.x, path[k].pose.y - path[k - 1].pose.y);
+  return length;
+}
+
+/** How far the path of the landmarks is from that of the grids; warns where it is much of the way. */
+void comparePaths(const Trajectory& grid_path, const Trajectory& path, Metrics& metrics, Reporter& reporter) {
   const auto pairs = associate(TimedTrajectory(grid_path), TimedTrajectory(path));
   const TrajectoryError error = absoluteTrajectoryError(pairs);
   metrics["landmark_path_difference_m"] = error.translation_m.rmse;
   metrics["landmark_path_difference_deg"] = error.rotation_deg.rmse;
+  constexpr double kMuch = 0.01;
+  const std::string text =
+      fmt::format("the paths of grids and landmarks differ by {:.2f} m and {:.1f} deg (RMS)",
+                  error.translation_m.rmse, error.rotation_deg.rmse);
+  if (error.translation_m.rmse > kMuch * lengthOf(path))
+    reporter.warning(text + "; the map of one of them is bent");
+  else
+    reporter.log(text);
 }
 
 }  // namespace
@@ -153,11 +170,11 @@ FinishedMap LandmarkHalf::finish(const LandmarkSubmaps& submaps, const Trajector
   const StageTimer write_timer;
   Trajectory path = trajectoryOf(submaps, joined);
   writeLandmarkResults(out_, prefix_, joined, path);
-  writeFrames(out_.file("frames.csv"), submaps, joined);
+  writeFrames(out_.file(prefix_ + "frames.csv"), submaps, joined);
   addTime(metrics, "write_", write_timer);
   addStage(summary.metrics, write_timer.record(prefix_ + "write"));
   for (const auto& [key, value] : metrics.items()) summary.metrics[prefix_ + key] = value;
-  if (!grid_path.empty()) addPathDifference(grid_path, path, summary.metrics);
+  if (!grid_path.empty()) comparePaths(grid_path, path, summary.metrics, reporter_);
   return {std::move(path), [submaps, joined = std::move(joined)](const RunRecord& record) {
             return runReport(submaps, joined, record);
           }};

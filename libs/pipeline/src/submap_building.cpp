@@ -34,11 +34,11 @@ StretchMapper::StretchMapper(const Configuration& config, const MapForms& forms)
 }
 
 StretchSubmaps StretchMapper::map(const Stretch& stretch) const {
-  StretchSubmaps out;
-  if (grids_) out.grids = grids_->map(stretch);
-  if (landmarks_)
-    out.landmarks = grids_ ? landmarks_->mapAlong(stretch, out.grids) : landmarks_->map(stretch);
-  return out;
+  if (!grids_) return {{}, landmarks_->map(stretch)};
+  if (!landmarks_) return {grids_->map(stretch), {}};
+  StretchSubmaps both{grids_->map(landmarks_->withCorrectedOdometry(stretch)), {}};
+  both.landmarks = landmarks_->mapBeside(both.grids, stretch);
+  return both;
 }
 
 uint64_t SubmapFiles::stretchesDone() const {

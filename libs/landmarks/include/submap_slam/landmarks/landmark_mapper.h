@@ -23,9 +23,13 @@ class LandmarkMapper {
    * of each submap is seeded by (seed, index of its first frame). */
   LandmarkSubmaps map(const Stretch& stretch) const;
 
-  /** Landmarks in the frames of grid submaps of the same stretch, one for each: odometry is replaced by the
-   * path that the grid's filter found, with its uncertainty. */
-  LandmarkSubmaps mapAlong(const Stretch& stretch, const std::vector<GridSubmap::Ptr>& grids) const;
+  /** The stretch with better odometry: where it has any, the path that odometry and landmarks give together,
+   * over all frames, the warm-up too. */
+  Stretch withCorrectedOdometry(const Stretch& stretch) const;
+
+  /** Submaps of the same frames as the grid submaps of the stretch, one for each, which begin and end at the
+   * same poses. No rule closes one before. */
+  LandmarkSubmaps mapBeside(const std::vector<GridSubmap::Ptr>& grids, const Stretch& stretch) const;
 
  private:
   LandmarkMapperParams params_;

@@ -23,8 +23,8 @@ struct StretchSubmaps {
   LandmarkSubmaps landmarks;
 };
 
-/** Builds all forms of the submaps of a stretch. With both, landmarks are mapped along the path that the
- * grids' filter found, so that they share boundaries and frames. Thread-safe. */
+/** Builds all forms of the submaps of a stretch. With both, landmarks correct the odometry that the grids'
+ * filter gets, and landmark submaps are made of the same frames as the grids. Thread-safe. */
 class StretchMapper {
  public:
   /** Throws ConfigError if parameters contradict each other. */
