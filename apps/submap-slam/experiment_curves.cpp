@@ -24,11 +24,13 @@ std::string labelOf(const ExperimentRow& row) { return fmt::format("{}, {}", row
 
 double degrees(double radians) { return radians * 180 / M_PI; }
 
+constexpr const char* kTrajectoryFile = "trajectory.tum";
+
 /** The poses where submaps end, times since the start; none if the cell has no such file. */
 std::vector<FrameError> framesOf(const CellResult& cell) {
   const fs::path file = cell.folder / kConsistencyFile;
   if (cell.figures.empty() || !fs::exists(file)) return {};
-  const double start = readTimedFrames((cell.folder / "frames.csv").string()).front().t;
+  const double start = readTum((cell.folder / kTrajectoryFile).string()).poses().front().t;
   auto frames = readFrameErrors(file.string());
   for (FrameError& frame : frames) frame.t -= start;
   return frames;
@@ -151,7 +153,7 @@ Json pathCurves(const Experiment& experiment, const ExperimentPlot& plot,
     set["paths"] = Json::array();
     for (auto row = first; row != last; ++row) {
       const CellResult& cell = cellOf(experiment, plot, *row);
-      const fs::path file = cell.folder / "trajectory.tum";
+      const fs::path file = cell.folder / kTrajectoryFile;
       if (cell.figures.empty() || !fs::exists(file)) continue;
       Json path = reference.drawn(readTum(file.string()));
       path["label"] = row->setting;
