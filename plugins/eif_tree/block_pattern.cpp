@@ -30,15 +30,14 @@ BlockPattern::BlockPattern(const JointProblem& problem)
     row_of_[at(variable)] = size_;
     size_ += rowsIn(variable);
   }
-  below_.reserve(order_.size());
+  std::vector<std::vector<int>> above(row_of_.size());  // in the order of their rows, as they come
   for (const int variable : order_) {
-    const int row = row_of_[at(variable)];
-    std::vector<int> below{variable};
+    above[at(variable)].push_back(variable);
     for (const int other : neighbours[at(variable)])
-      if (row_of_[at(other)] > row) below.push_back(other);
-    std::sort(below.begin(), below.end(), [this](int a, int b) { return row_of_[at(a)] < row_of_[at(b)]; });
-    below_.push_back(std::move(below));
+      if (row_of_[at(other)] > row_of_[at(variable)]) above[at(other)].push_back(variable);
   }
+  above_.reserve(order_.size());
+  for (const int variable : order_) above_.push_back(std::move(above[at(variable)]));
 }
 
 BlockPattern::Neighbours BlockPattern::findNeighbours(const JointProblem& problem) const {
@@ -73,13 +72,14 @@ std::vector<int> BlockPattern::eliminationOrder(const Neighbours& neighbours) co
   return order;
 }
 
-Eigen::SparseMatrix<double> BlockPattern::lowerTriangle() const {
+Eigen::SparseMatrix<double> BlockPattern::upperTriangle() const {
   Eigen::SparseMatrix<double> matrix(size_, size_);
   Eigen::VectorXi counts(size_);
   for (std::size_t i = 0; i < order_.size(); ++i) {
-    int rows = 0;
-    for (const int variable : below_[i]) rows += rowsIn(variable);
-    for (int c = 0; c < rowsIn(order_[i]); ++c) counts[row_of_[at(order_[i])] + c] = rows - c;
+    const int width = rowsIn(order_[i]), column = row_of_[at(order_[i])];
+    int rows = -width;
+    for (const int variable : above_[i]) rows += rowsIn(variable);
+    for (int c = 0; c < width; ++c) counts[column + c] = rows + c + 1;
   }
   matrix.resizeNonZeros(counts.sum());
   int entry = 0;
@@ -87,10 +87,11 @@ Eigen::SparseMatrix<double> BlockPattern::lowerTriangle() const {
     for (int c = 0; c < rowsIn(order_[i]); ++c) {
       const int column = row_of_[at(order_[i])] + c;
       matrix.outerIndexPtr()[column] = entry;
-      for (const int variable : below_[i])
-        for (int r = 0; r < rowsIn(variable); ++r)
-          if (row_of_[at(variable)] + r >= column)
-            matrix.innerIndexPtr()[entry++] = row_of_[at(variable)] + r;
+      for (const int variable : above_[i]) {
+        const int row = row_of_[at(variable)];
+        for (int r = row; r < std::min(row + rowsIn(variable), column + 1); ++r)
+          matrix.innerIndexPtr()[entry++] = r;
+      }
     }
   matrix.outerIndexPtr()[size_] = entry;
   return matrix;

@@ -20,8 +20,8 @@ class BlockPattern {
   int poseRow(std::size_t pose) const { return row_of_[pose]; }
   int landmarkRow(std::size_t landmark) const { return row_of_[poses_ + landmark]; }
 
-  /** The lower triangle, with the entries of the pattern and no values yet. */
-  Eigen::SparseMatrix<double> lowerTriangle() const;
+  /** The upper triangle, with the entries of the pattern and no values yet. */
+  Eigen::SparseMatrix<double> upperTriangle() const;
 
   /** First row of each part of a Contribution to submap k; −1: not in the state. */
   std::vector<int> rowsOf(const JointProblem& problem, std::size_t k) const;
@@ -36,10 +36,9 @@ class BlockPattern {
 
   std::size_t poses_;
   int size_ = 0;
-  std::vector<int> row_of_;  // of each variable: poses, then landmarks
-  std::vector<int> order_;   // variables in the order of their rows
-  std::vector<std::vector<int>>
-      below_;  // for each variable in that order: first rows of its blocks from the diagonal down
+  std::vector<int> row_of_;              // of each variable: poses, then landmarks
+  std::vector<int> order_;               // variables in the order of their rows
+  std::vector<std::vector<int>> above_;  // for each in that order: those linked to it from the top to itself
 };
 
 /** The variables that submap k links: start pose (but the first one), end pose, landmarks. Poses count from

@@ -1,22 +1,31 @@
 #include "compatibility.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <set>
 
 namespace submap_slam::landmark_joining {
 namespace {
 
-/** A set of pairings that grows and shrinks at its end, with its joint distance: the Cholesky factor of its
- * covariance gets two rows with each pairing. */
+std::size_t countFeatures(const Candidates& candidates) {
+  std::set<int> features;
+  for (const Pairing& p : candidates.pairings) features.insert(p.feature);
+  return features.size();
+}
+
+/** A set of pairings, each feature once, that grows and shrinks at its end, with its joint distance: the
+ * Cholesky factor of its covariance gets two rows with each pairing. */
 class JointSet {
  public:
-  explicit JointSet(const Candidates& candidates)
-      : all_(candidates),
-        factor_(Eigen::MatrixXd::Zero(candidates.covariance.rows(), candidates.covariance.cols())),
-        whitened_(Eigen::VectorXd::Zero(candidates.innovation.size())) {}
+  explicit JointSet(const Candidates& candidates) : all_(candidates) {
+    const auto rows = 2 * static_cast<Eigen::Index>(countFeatures(candidates));
+    factor_.setZero(rows, rows);
+    whitened_.setZero(rows);
+  }
 
   /** Adds a pairing if the set agrees with it; false: it does not, nothing is changed. */
   bool push(std::size_t pairing) {
@@ -53,23 +62,58 @@ class JointSet {
   }
 
   const Candidates& all_;
-  Eigen::MatrixXd factor_;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> factor_;
   Eigen::VectorXd whitened_;
   std::vector<std::size_t> chosen_;
   std::vector<double> distance2_;
 };
 
-std::vector<std::size_t> byDistance(const std::vector<Pairing>& pairings) {
-  std::vector<std::size_t> order(pairings.size());
+/** Indices in the order of their distances. */
+std::vector<std::size_t> ascending(const std::vector<double>& distances2) {
+  std::vector<std::size_t> order(distances2.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return pairings[a].distance2 < pairings[b].distance2;
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return distances2[a] < distances2[b]; });
   return order;
 }
 
-/** Twice the logarithm of how much more likely the pairings are than as many new landmarks. */
-double evidenceFor(const Candidates& candidates, const std::vector<std::size_t>& set, double density) {
+std::vector<std::size_t> byDistance(const std::vector<Pairing>& pairings) {
+  std::vector<double> distances2;
+  distances2.reserve(pairings.size());
+  for (const Pairing& p : pairings) distances2.push_back(p.distance2);
+  return ascending(distances2);
+}
+
+/** Pairings in the order of their distance from where one of them puts them. */
+std::vector<std::size_t> byDistanceGiven(const Candidates& all, std::size_t pairing) {
+  const auto at = 2 * static_cast<Eigen::Index>(pairing);
+  const Eigen::MatrixX2d gain =
+      all.covariance.middleCols<2>(at) * all.covariance.block<2, 2>(at, at).inverse();
+  const Eigen::VectorXd innovation = all.innovation - gain * all.innovation.segment<2>(at);
+  std::vector<double> distances2;
+  for (Eigen::Index row = 0; row < innovation.size(); row += 2) {
+    const Eigen::Matrix2d s =
+        all.covariance.block<2, 2>(row, row) - gain.middleRows<2>(row) * all.covariance.block<2, 2>(at, row);
+    const Eigen::Vector2d v = innovation.segment<2>(row);
+    distances2.push_back(row == at ? 0 : v.dot(s.inverse() * v));
+  }
+  return ascending(distances2);
+}
+
+/** Takes pairings in an order, each feature and each landmark once, that agree with those before. */
+std::vector<std::size_t> greedy(const Candidates& candidates, const std::vector<std::size_t>& order) {
+  JointSet set(candidates);
+  std::set<int> features, landmarks;
+  for (const std::size_t i : order) {
+    const Pairing& p = candidates.pairings[i];
+    if (features.count(p.feature) > 0 || landmarks.count(p.landmark) > 0 || !set.push(i)) continue;
+    features.insert(p.feature), landmarks.insert(p.landmark);
+  }
+  return set.chosen();
+}
+
+/** Twice the logarithm of the joint density of the pairings' innovations, without the powers of 2π. */
+double logDensity(const Candidates& candidates, const std::vector<std::size_t>& set) {
   if (set.empty()) return 0;
   std::vector<Eigen::Index> rows;
   for (const std::size_t pairing : set)
@@ -78,8 +122,31 @@ double evidenceFor(const Candidates& candidates, const std::vector<std::size_t>&
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
   const Eigen::VectorXd whitened = factor.matrixL().solve(candidates.innovation(rows));
   const double log_det = 2 * factor.matrixLLT().diagonal().array().log().sum();
-  return -whitened.squaredNorm() - log_det -
-         2 * static_cast<double>(set.size()) * std::log(2 * M_PI * density);
+  return -whitened.squaredNorm() - log_det;
+}
+
+/** Twice the logarithm of how much more likely the pairings are than as many new landmarks. */
+double evidenceFor(const Candidates& candidates, const std::vector<std::size_t>& set, double density) {
+  return logDensity(candidates, set) - 2 * static_cast<double>(set.size()) * std::log(2 * M_PI * density);
+}
+
+/** The pairings of a set that are not in another one. */
+std::vector<std::size_t> difference(std::vector<std::size_t> set, std::vector<std::size_t> other) {
+  std::vector<std::size_t> rest;
+  std::sort(set.begin(), set.end()), std::sort(other.begin(), other.end());
+  std::set_difference(set.begin(), set.end(), other.begin(), other.end(), std::back_inserter(rest));
+  return rest;
+}
+
+/** The pairings of a set whose features another one pairs too. */
+std::vector<std::size_t> ofFeatures(const Candidates& candidates, const std::vector<std::size_t>& set,
+                                    const std::vector<std::size_t>& other) {
+  std::set<int> features;
+  for (const std::size_t i : other) features.insert(candidates.pairings[i].feature);
+  std::vector<std::size_t> common;
+  for (const std::size_t i : set)
+    if (features.count(candidates.pairings[i].feature) > 0) common.push_back(i);
+  return common;
 }
 
 class BranchAndBound {
@@ -132,6 +199,27 @@ class BranchAndBound {
   int steps_ = 0;
 };
 
+/** True if two pairings of a feature cannot both be right: their landmarks are not one. */
+bool areApart(const Candidates& candidates, std::size_t a, std::size_t b) {
+  const auto i = 2 * static_cast<Eigen::Index>(a), k = 2 * static_cast<Eigen::Index>(b);
+  const auto covariance = [&](Eigen::Index row, Eigen::Index column) {
+    return Eigen::Matrix2d(candidates.covariance.block<2, 2>(row, column));
+  };
+  const Eigen::Matrix2d s = covariance(i, i) + covariance(k, k) - covariance(i, k) - covariance(k, i);
+  const Eigen::Vector2d d = candidates.innovation.segment<2>(i) - candidates.innovation.segment<2>(k);
+  return d.dot(s.inverse() * d) > candidates.gate2;
+}
+
+/** How many pairings have a counterpart in another set that takes their feature for another landmark. */
+std::size_t countElsewhere(const Candidates& candidates, const std::vector<std::size_t>& set,
+                           const std::vector<std::size_t>& other) {
+  return static_cast<std::size_t>(std::count_if(set.begin(), set.end(), [&](std::size_t i) {
+    return std::any_of(other.begin(), other.end(), [&](std::size_t k) {
+      return candidates.pairings[i].feature == candidates.pairings[k].feature && areApart(candidates, i, k);
+    });
+  }));
+}
+
 }  // namespace
 
 double jointGate(double gate2, std::size_t degrees_of_freedom) {
@@ -141,14 +229,7 @@ double jointGate(double gate2, std::size_t degrees_of_freedom) {
 }
 
 std::vector<std::size_t> nearestNeighbours(const Candidates& candidates) {
-  JointSet set(candidates);
-  std::set<int> features, landmarks;
-  for (const std::size_t i : byDistance(candidates.pairings)) {
-    const Pairing& p = candidates.pairings[i];
-    if (features.count(p.feature) > 0 || landmarks.count(p.landmark) > 0 || !set.push(i)) continue;
-    features.insert(p.feature), landmarks.insert(p.landmark);
-  }
-  return set.chosen();
+  return greedy(candidates, byDistance(candidates.pairings));
 }
 
 std::vector<std::size_t> jointCompatibility(const Candidates& candidates) {
@@ -156,8 +237,11 @@ std::vector<std::size_t> jointCompatibility(const Candidates& candidates) {
 }
 
 std::vector<std::size_t> jointUnlessNearestExplain(const Candidates& candidates) {
-  auto nearest = nearestNeighbours(candidates), joint = jointCompatibility(candidates);
-  return 2 * joint.size() >= 3 * nearest.size() ? joint : nearest;
+  auto nearest = nearestNeighbours(candidates);
+  const auto largerByHalf = [&](std::size_t size) { return 2 * size >= 3 * nearest.size(); };
+  if (!largerByHalf(countFeatures(candidates))) return nearest;
+  auto joint = jointCompatibility(candidates);
+  return largerByHalf(joint.size()) ? joint : nearest;
 }
 
 std::vector<std::size_t> convincing(const Candidates& candidates, const std::vector<std::size_t>& set,
@@ -167,6 +251,24 @@ std::vector<std::size_t> convincing(const Candidates& candidates, const std::vec
     if (evidenceFor(candidates, {pairing}, density) >= 0) strong.push_back(pairing);
   const bool together = evidenceFor(candidates, set, density) >= evidenceFor(candidates, strong, density);
   return together ? set : strong;
+}
+
+std::vector<std::size_t> undisputed(const Candidates& candidates, const std::vector<std::size_t>& set) {
+  std::vector<std::size_t> left = set;
+  std::vector<bool> met(candidates.pairings.size());
+  for (const std::size_t i : set) met[i] = true;
+  for (std::size_t seed = 0; seed < met.size(); ++seed) {
+    if (met[seed]) continue;
+    const auto rival = greedy(candidates, byDistanceGiven(candidates, seed));
+    for (const std::size_t i : rival) met[i] = true;
+    const auto disputed = difference(set, rival);
+    if (disputed.size() < 2) continue;
+    if (3 * countElsewhere(candidates, disputed, difference(rival, set)) < 2 * disputed.size()) continue;
+    const double evidence = logDensity(candidates, ofFeatures(candidates, set, rival)) -
+                            logDensity(candidates, ofFeatures(candidates, rival, set));
+    if (evidence < candidates.gate2) left = difference(left, disputed);
+  }
+  return left;
 }
 
 }  // namespace submap_slam::landmark_joining

@@ -43,6 +43,16 @@ std::vector<std::size_t> jointUnlessNearestExplain(const Candidates& candidates)
 std::vector<std::size_t> convincing(const Candidates& candidates, const std::vector<std::size_t>& set,
                                     double density);
 
+/** The pairings of a set that no rival disputes. A rival is what agrees with a pairing outside the set, taken
+ * greedily by the distance that is left given this one. It disputes the pairings that it does not hold, if
+ * these are two or more, it takes at least two thirds of their features for landmarks that are certainly
+ * others, and the set is not exp(gate2 / 2) times as likely as the rival, by the joint densities for the
+ * features that both pair (with the usual gate 99 % against 1 %). How many features each explains says little
+ * where landmarks repeat; see jointUnlessNearestExplain(). A single feature that may be either of two
+ * landmarks does not make a place doubtful: it stays with the likelier one.
+ * @return indices of pairings, ascending if any is disputed */
+std::vector<std::size_t> undisputed(const Candidates& candidates, const std::vector<std::size_t>& set);
+
 /** Largest joint squared distance, with as many degrees of freedom, that is as likely as a distance of
  * `gate2` is with two: the quantile of the χ² distribution for 1 − exp(−gate2 / 2), by Wilson and Hilferty
  * (for 99 % at most 0.2 % off, and the same as `gate2` for two degrees of freedom). */

@@ -8,7 +8,7 @@ namespace submap_slam::landmark_joining {
 InformationForm::InformationForm(const JointProblem& problem)
     : problem_(problem),
       pattern_(problem),
-      matrix_(pattern_.lowerTriangle()),
+      matrix_(pattern_.upperTriangle()),
       vector_(Eigen::VectorXd::Zero(pattern_.size())),
       cholesky_(matrix_) {}
 
@@ -17,28 +17,69 @@ void InformationForm::clear() {
   vector_.setZero();
 }
 
-void InformationForm::add(std::size_t k, const Contribution& c) {
-  const std::vector<int> rows = pattern_.rowsOf(problem_, k);
-  const auto part = [](std::size_t i) {
-    return i < 2 ? 3 * static_cast<int>(i) : 2 + 2 * static_cast<int>(i);
+namespace {
+
+/** Row and column of a Contribution where its i-th part begins: start pose, end pose, landmarks. */
+Eigen::Index partAt(std::size_t i) {
+  return i < 2 ? 3 * static_cast<Eigen::Index>(i) : 2 + 2 * static_cast<Eigen::Index>(i);
+}
+
+int partSize(std::size_t i) { return i < 2 ? 3 : 2; }
+
+}  // namespace
+
+/** Adds the blocks of one part's columns, from the top to the diagonal.
+ * @param below_top how far a block's first row is below the first entry of its columns; the same in all */
+template <class BelowTop>
+void InformationForm::addColumn(const Contribution& c, const std::vector<int>& rows, std::size_t j,
+                                const BelowTop& below_top) {
+  vector_.segment(rows[j], partSize(j)) += c.vector.segment(partAt(j), partSize(j));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i] < 0 || rows[i] > rows[j]) continue;
+    const auto offset = below_top(rows[i]);
+    for (int column = 0; column < partSize(j); ++column) {
+      double* to = matrix_.valuePtr() + matrix_.outerIndexPtr()[rows[j] + column] + offset;
+      const int end = i == j ? column + 1 : partSize(i);  // of the block on the diagonal the upper triangle
+      const double* from = &c.matrix(partAt(i), partAt(j) + column);
+      for (int row = 0; row < end; ++row) *to++ += *from++;
+    }
+  }
+}
+
+/** The same as add() for each, but one block column after the other, so that it is looked up once where in a
+ * column a block is. */
+void InformationForm::sum(const std::vector<Contribution>& contributions) {
+  struct Part {
+    std::size_t submap, part;
   };
+  clear();
+  std::vector<std::vector<int>> rows;
+  std::vector<std::vector<Part>> parts_at(static_cast<std::size_t>(pattern_.size()));  // by first row
+  for (std::size_t k = 0; k < contributions.size(); ++k) {
+    rows.push_back(pattern_.rowsOf(problem_, k));
+    for (std::size_t i = 0; i < rows[k].size(); ++i)
+      if (rows[k][i] >= 0) parts_at[static_cast<std::size_t>(rows[k][i])].push_back({k, i});
+  }
+  std::vector<int> below_top(parts_at.size());
+  const int *start = matrix_.outerIndexPtr(), *index = matrix_.innerIndexPtr();
+  for (int column = 0; column < pattern_.size(); ++column) {
+    const auto& parts = parts_at[static_cast<std::size_t>(column)];
+    if (parts.empty()) continue;
+    for (int e = start[column]; e < start[column + 1]; ++e)
+      below_top[static_cast<std::size_t>(index[e])] = e - start[column];
+    for (const Part& p : parts)
+      addColumn(contributions[p.submap], rows[p.submap], p.part,
+                [&](int row) { return below_top[static_cast<std::size_t>(row)]; });
+  }
+}
+
+void InformationForm::add(std::size_t k, const Contribution& contribution) {
+  const std::vector<int> rows = pattern_.rowsOf(problem_, k);
   const int *start = matrix_.outerIndexPtr(), *index = matrix_.innerIndexPtr();
   for (std::size_t j = 0; j < rows.size(); ++j) {
     if (rows[j] < 0) continue;
-    const int width = j < 2 ? 3 : 2;
-    vector_.segment(rows[j], width) += c.vector.segment(part(j), width);
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (rows[i] < rows[j]) continue;
-      const int height = i < 2 ? 3 : 2;
-      for (int column = 0; column < width; ++column) {
-        const int first = i == j ? column : 0;  // of the block on the diagonal only the lower triangle
-        const int to_column = rows[j] + column;
-        const int* found =
-            std::lower_bound(index + start[to_column], index + start[to_column + 1], rows[i] + first);
-        double* to = matrix_.valuePtr() + (found - index);
-        for (int row = first; row < height; ++row) *to++ += c.matrix(part(i) + row, part(j) + column);
-      }
-    }
+    const int *top = index + start[rows[j]], *diagonal = index + start[rows[j] + 1] - 1;
+    addColumn(contribution, rows, j, [&](int row) { return std::lower_bound(top, diagonal, row) - top; });
   }
 }
 

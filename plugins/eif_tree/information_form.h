@@ -14,8 +14,8 @@ class InformationForm {
  public:
   explicit InformationForm(const JointProblem& problem);
 
-  void clear();
-  void add(std::size_t k, const Contribution& contribution);
+  /** Sums the contributions of all submaps. */
+  void sum(const std::vector<Contribution>& contributions);
 
   /** Sums the contributions of all submaps, each linearised at the state; returns the objective there. */
   double lineariseAll(const JointState& state);
@@ -35,9 +35,15 @@ class InformationForm {
   const Eigen::SparseMatrix<double>& matrix() const { return matrix_; }
 
  private:
+  void clear();
+  void add(std::size_t k, const Contribution& contribution);
+  template <class BelowTop>
+  void addColumn(const Contribution& contribution, const std::vector<int>& rows, std::size_t part,
+                 const BelowTop& below_top);
+
   const JointProblem& problem_;
   BlockPattern pattern_;
-  Eigen::SparseMatrix<double> matrix_;  // lower triangle
+  Eigen::SparseMatrix<double> matrix_;  // upper triangle
   Eigen::VectorXd vector_;
   SparseCholesky cholesky_;
 };

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -62,7 +63,19 @@ std::vector<HalfInverse> halfInverses(const InformationForm& form, const Partner
   return halves;
 }
 
-/** Pairs within the gate in the order of their distance, each landmark in one of them. */
+/** Features in a square metre of all submaps together. */
+double densityOf(const JointProblem& problem) {
+  double features = 0, area = 0;
+  for (const Observation* observation : problem.observations) {
+    const Eigen::VectorXd z = observation->z.tail(observation->z.size() - 3);
+    features += static_cast<double>(z.size()) / 2;
+    area += areaOf(z);
+  }
+  return features / area;
+}
+
+/** Pairs within the gate, and more likely than two landmarks, in the order of their distance; each landmark
+ * in one of them. */
 std::vector<Twins> findTwins(const JointProblem& problem, const JointState& state, double gate2) {
   InformationForm form(problem);
   form.lineariseAll(state);
@@ -71,6 +84,7 @@ std::vector<Twins> findTwins(const JointProblem& problem, const JointState& stat
   const Covariances covariances = marginalCovariances(problem, form);
   const Partners partners = possibleTwins(problem, state, covariances, gate2);
   const auto halves = halfInverses(form, partners);
+  const double evidence_of_two = 2 * std::log(2 * M_PI * densityOf(problem));
   for (std::size_t a = 0; a < partners.size(); ++a)
     for (const int partner : partners[a]) {
       const auto b = static_cast<std::size_t>(partner);
@@ -79,7 +93,9 @@ std::vector<Twins> findTwins(const JointProblem& problem, const JointState& stat
           covariances.landmarks[a] + covariances.landmarks[b] - cross - cross.transpose();
       const Point d = state.landmarks[a] - state.landmarks[b];
       const double distance2 = d.dot(s.inverse() * d);
-      if (distance2 <= gate2) twins.push_back({static_cast<int>(a), partner, distance2});
+      const double evidence_of_one = -distance2 - std::log(s.determinant());
+      if (distance2 <= gate2 && evidence_of_one >= evidence_of_two)
+        twins.push_back({static_cast<int>(a), partner, distance2});
     }
   std::stable_sort(twins.begin(), twins.end(),
                    [](const Twins& a, const Twins& b) { return a.distance2 < b.distance2; });

@@ -5,6 +5,7 @@
 #include <submap_slam/core/errors.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 namespace submap_slam::landmark_joining {
@@ -71,10 +72,17 @@ Observation observationOf(const LandmarkSubmap& submap, const std::vector<bool>&
   observation.z = z(rows);
   const Eigen::MatrixXd q = flooredCovariance(submap).asEigen()(rows, rows);
   const Eigen::LLT<Eigen::MatrixXd> factor(q);
-  if (factor.info() != Eigen::Success)
+  if (!q.allFinite() || factor.info() != Eigen::Success)
     throw InputError(fmt::format("submap {}: its covariance is not positive definite", submap.id));
   observation.information = factor.solve(Eigen::MatrixXd::Identity(q.rows(), q.cols()));
   return observation;
+}
+
+double areaOf(const Eigen::VectorXd& features) {
+  double radius2 = 1;
+  for (Eigen::Index row = 0; row < features.size(); row += 2)
+    radius2 = std::max(radius2, features.segment<2>(row).squaredNorm());
+  return M_PI * radius2;
 }
 
 Pose startOf(const JointState& state, std::size_t k) {

@@ -29,6 +29,10 @@ struct Observation {
  * @param keep one for each feature */
 Observation observationOf(const LandmarkSubmap& submap, const std::vector<bool>& keep);
 
+/** Area (m²) of the disc about the start pose that holds the features, of a radius of at least 1 m.
+ * @param features in the submap's frame, two rows for each */
+double areaOf(const Eigen::VectorXd& features);
+
 /** Where each submap of a sequence finds its landmarks in the state; submap k ends at pose k and starts at
  * pose k − 1, the first one at the origin. */
 struct JointProblem {

@@ -64,8 +64,7 @@ void SequentialFilter::freeze(std::size_t k) {
 /** I = Σ I_k, i = Σ i_k, X = I⁻¹ i. */
 bool SequentialFilter::solveFrozen() {
   form_ = std::make_unique<InformationForm>(problem_);
-  form_->clear();
-  for (std::size_t k = 0; k < problem_.submaps(); ++k) form_->add(k, frozen_[k]);
+  form_->sum(frozen_);
   if (!form_->factorize()) return false;
   JointState zero;
   zero.ends.assign(state_.ends.size(), Pose::Zero());

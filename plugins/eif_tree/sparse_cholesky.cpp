@@ -8,14 +8,14 @@ namespace submap_slam::landmark_joining {
 namespace {
 
 /** The matrix as CHOLMOD sees it; nothing is copied. */
-cholmod_sparse viewOf(Eigen::SparseMatrix<double>& lower) {
+cholmod_sparse viewOf(Eigen::SparseMatrix<double>& upper) {
   cholmod_sparse view{};
-  view.nrow = view.ncol = static_cast<std::size_t>(lower.rows());
-  view.nzmax = static_cast<std::size_t>(lower.nonZeros());
-  view.p = lower.outerIndexPtr();
-  view.i = lower.innerIndexPtr();
-  view.x = lower.valuePtr();
-  view.stype = -1;
+  view.nrow = view.ncol = static_cast<std::size_t>(upper.rows());
+  view.nzmax = static_cast<std::size_t>(upper.nonZeros());
+  view.p = upper.outerIndexPtr();
+  view.i = upper.innerIndexPtr();
+  view.x = upper.valuePtr();
+  view.stype = 1;
   view.itype = CHOLMOD_INT;
   view.xtype = CHOLMOD_REAL;
   view.dtype = CHOLMOD_DOUBLE;
@@ -31,7 +31,7 @@ SparseCholesky::SparseCholesky(Eigen::SparseMatrix<double>& pattern) {
   common_.supernodal = CHOLMOD_SIMPLICIAL;
   common_.nmethods = 1;
   common_.method[0].ordering = CHOLMOD_NATURAL;
-  common_.postorder = 1;
+  common_.postorder = 0;  // AMD did that; a matrix in the order of elimination need not be transposed
   cholmod_sparse view = viewOf(pattern);
   factor_ = cholmod_analyze(&view, &common_);
   if (factor_ == nullptr) {
@@ -49,8 +49,8 @@ SparseCholesky::~SparseCholesky() {
   cholmod_finish(&common_);
 }
 
-bool SparseCholesky::factorize(Eigen::SparseMatrix<double>& lower) {
-  cholmod_sparse view = viewOf(lower);
+bool SparseCholesky::factorize(Eigen::SparseMatrix<double>& upper) {
+  cholmod_sparse view = viewOf(upper);
   common_.final_ll = 0;
   if (cholmod_factorize(&view, factor_, &common_) == 0 || common_.status != CHOLMOD_OK) return false;
   // L D Lᵀ exists for many indefinite matrices too.

@@ -23,14 +23,14 @@ Eigen::MatrixXd inverseBetween(const HalfInverse& a, const HalfInverse& b);
  * done once and serves every matrix with the same pattern. */
 class SparseCholesky {
  public:
-  /** @param pattern lower triangle; values do not matter */
+  /** @param pattern upper triangle; values do not matter */
   explicit SparseCholesky(Eigen::SparseMatrix<double>& pattern);
   ~SparseCholesky();
   SparseCholesky(const SparseCholesky&) = delete;
   SparseCholesky& operator=(const SparseCholesky&) = delete;
 
   /** False if the matrix is not positive definite. */
-  bool factorize(Eigen::SparseMatrix<double>& lower);
+  bool factorize(Eigen::SparseMatrix<double>& upper);
 
   /** A⁻¹ B; after factorize() only. */
   Eigen::MatrixXd solve(const Eigen::MatrixXd& b);

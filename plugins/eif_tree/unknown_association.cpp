@@ -31,13 +31,8 @@ SequentialOptions whileAssociating() {
   return options;
 }
 
-/** Features in a square metre (1/m²) of the disc about the start pose that holds them. */
-double densityOf(const Eigen::VectorXd& z) {
-  double radius2 = 1;
-  for (Eigen::Index row = 0; row < z.size(); row += 2)
-    radius2 = std::max(radius2, z.segment<2>(row).squaredNorm());
-  return static_cast<double>(z.size()) / (2 * M_PI * radius2);
-}
+/** Features in a square metre (1/m²) of the area that they are spread over. */
+double densityOf(const Eigen::VectorXd& z) { return static_cast<double>(z.size()) / 2 / areaOf(z); }
 
 class SequentialAssociation {
  public:
@@ -124,7 +119,10 @@ std::vector<Decision> SequentialAssociation::decide(const LandmarkSubmap& submap
       options_.joint_search ? jointUnlessNearestExplain(candidates) : nearestNeighbours(candidates);
   for (const std::size_t i : agreeing)
     decisions[static_cast<std::size_t>(candidates.pairings[i].feature)].kind = Kind::kNew;
-  for (const std::size_t i : convincing(candidates, agreeing, densityOf(z))) {
+  const auto chosen = convincing(candidates, agreeing, densityOf(z));
+  for (const std::size_t i : chosen)
+    decisions[static_cast<std::size_t>(candidates.pairings[i].feature)].kind = Kind::kDropped;
+  for (const std::size_t i : undisputed(candidates, chosen)) {
     const Pairing& pairing = candidates.pairings[i];
     decisions[static_cast<std::size_t>(pairing.feature)] = {Kind::kMatched, pairing.landmark,
                                                             pairing.distance2};

@@ -14,6 +14,7 @@ using testing::EifTreePlugin;
 using ::testing::HasSubstr;
 using testing::LandmarkWorldOptions;
 using testing::simulateLandmarks;
+using testing::submapOf;
 
 TEST_F(EifTreePlugin, JoiningAsSubmapsComeGivesTheSameBits) {
   LandmarkWorldOptions options;
@@ -68,6 +69,30 @@ TEST_F(EifTreePlugin, ContradictoryIdsEndInAResultThatIsFinite) {
   const JoinedLandmarks joined = joiner->join(submaps, {});
   EXPECT_TRUE(std::isfinite(joined.objective));
   EXPECT_GT(joined.objective, 10 * consistent);
+}
+
+TEST_F(EifTreePlugin, DegenerateSequencesHaveAResultOrAnErrorWhateverTheAssociation) {
+  for (const char* association : {"known", "nearest_neighbour", "jcbb"}) {
+    SCOPED_TRACE(association);
+    parameters.set("eif_tree", "association", association);
+    const auto one = submapOf({1, 0, 0}, {{7, 2, 1, 1}}, 0.01), none = submapOf({1, 0, 0}, {}, 0.01);
+    EXPECT_EQ(joiner->join({one}, {}).landmarks.size(), 1u);
+    EXPECT_EQ(joiner->join({one}, {}).status, JoinStatus::kConverged);
+    EXPECT_EQ(joiner->join({none, none}, {}).status, JoinStatus::kConverged);
+    EXPECT_EQ(joiner->join({none, one, none}, {}).landmarks.size(), 1u);
+
+    const auto exact = submapOf({1, 0, 0}, {{7, 2, 1, 1}}, 1e-30);
+    const JoinedLandmarks joined = joiner->join({exact, exact}, {});
+    EXPECT_EQ(joined.status, JoinStatus::kFailed) << "beyond what a double can tell apart";
+    EXPECT_THAT(joined.reason, HasSubstr("not positive definite"));
+    EXPECT_EQ(joined.frames.size(), 3u);
+
+    for (const double covariance : {0.02, -0.02, std::nan("")}) {
+      const auto bad = submapOf({1, 0, 0}, {{7, 2, 1, 1}}, 0.01);
+      bad->covariance(3, 4) = bad->covariance(4, 3) = covariance;
+      EXPECT_THROW(joiner->join({one, bad}, {}), InputError) << covariance;
+    }
+  }
 }
 
 TEST_F(EifTreePlugin, EveryMethodCanBeChosen) {

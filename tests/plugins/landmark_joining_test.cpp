@@ -105,8 +105,8 @@ TEST(EifTree, CovarianceOfSomeRowsIsASubMatrixOfTheDenseInverse) {
   InformationForm form(associated.problem);
   form.lineariseAll(state);
   ASSERT_TRUE(form.factorize());
-  const Eigen::MatrixXd lower = form.matrix();
-  const Eigen::MatrixXd whole = Eigen::MatrixXd(lower.selfadjointView<Eigen::Lower>()).inverse();
+  const Eigen::MatrixXd upper = form.matrix();
+  const Eigen::MatrixXd whole = Eigen::MatrixXd(upper.selfadjointView<Eigen::Upper>()).inverse();
   const int pose = form.pattern().poseRow(3), landmark = form.pattern().landmarkRow(8);
   const std::vector<int> rows{pose, pose + 1, pose + 2, landmark, landmark + 1};
   const Eigen::MatrixXd expected = whole(rows, rows);

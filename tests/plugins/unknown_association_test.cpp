@@ -10,6 +10,7 @@
 #include "eif_tree/prediction.h"
 #include "eif_tree/sequential_filter.h"
 #include "eif_tree/unknown_association.h"
+#include "landmark_joining_fixture.h"
 #include "landmark_world.h"
 
 namespace submap_slam {
@@ -19,6 +20,7 @@ using namespace landmark_joining;
 using ::testing::ElementsAre;
 using testing::LandmarkWorldOptions;
 using testing::simulateLandmarks;
+using testing::submapOf;
 using ::testing::UnorderedElementsAre;
 
 /** Pairings on a line along x with what all features share (variance `common`) and what each has for itself.
@@ -114,6 +116,57 @@ TEST(Compatibility, OneUncertainPairingConvincesNobodyButSeveralDo) {
   EXPECT_TRUE(convincing({}, {}, kDensity).empty());
 }
 
+/** Features in a row, a landmark every 3 m, seen from a place known with a standard deviation of `sigma`: by
+ * the first pairings they are off by `shift`, by the others, a landmark on, by `shift` − 3 m. The last
+ * features have no landmark there. */
+Candidates betweenTwoPlaces(double shift, double sigma, int features, int without_other) {
+  std::vector<Pairing> pairings;
+  std::vector<double> innovations;
+  for (int i = 0; i < features; ++i) pairings.push_back({i, i, 0}), innovations.push_back(shift);
+  for (int i = 0; i < features - without_other; ++i)
+    pairings.push_back({i, i + 1, 0}), innovations.push_back(shift - 3);
+  return onALine(pairings, innovations, sigma * sigma, 0.01);
+}
+
+TEST(Compatibility, BetweenTwoPlacesThatFitNothingIsCertain) {
+  EXPECT_TRUE(undisputed(betweenTwoPlaces(1.4, 2, 5, 0), {0, 1, 2, 3, 4}).empty());
+  EXPECT_TRUE(undisputed(betweenTwoPlaces(0.4, 2, 5, 1), {0, 1, 2, 3, 4}).empty());
+}
+
+TEST(Compatibility, APlaceIsCertainIfTheOtherIsUnlikely) {
+  EXPECT_EQ(undisputed(betweenTwoPlaces(0.4, 0.5, 5, 0), {0, 1, 2, 3, 4}).size(), 5u);
+}
+
+TEST(Compatibility, APlaceIsCertainIfTheOtherExplainsTooFewFeatures) {
+  EXPECT_EQ(undisputed(betweenTwoPlaces(1.4, 2, 5, 2), {0, 1, 2, 3, 4}).size(), 5u);
+}
+
+TEST(Compatibility, WhatEveryRivalHoldsTooIsCertain) {
+  // Feature 3 is a landmark that moves with the robot's place: it fits at both.
+  auto c = betweenTwoPlaces(1.4, 2, 3, 0);
+  c.pairings.push_back({3, 9, 0});
+  c.innovation.conservativeResize(14);
+  c.innovation.tail<2>().setZero();
+  Eigen::MatrixXd covariance = 0.01 * Eigen::MatrixXd::Identity(14, 14);
+  covariance.topLeftCorner<12, 12>() = c.covariance;
+  c.covariance = covariance;
+  EXPECT_THAT(undisputed(c, {0, 1, 2, 6}), ElementsAre(6u));
+}
+
+TEST(Compatibility, OneFeatureOfTwoLandmarksMakesNoPlaceDoubtful) {
+  const auto c = onALine({{0, 0, 0}, {1, 1, 0}, {2, 2, 0}, {2, 3, 0}}, {0, 0, 0.2, -0.2}, 1, 0.01);
+  EXPECT_THAT(undisputed(c, {0, 1, 2}), ElementsAre(0u, 1u, 2u));
+}
+
+TEST(Compatibility, LandmarksThatMayBeOneDisputeNothing) {
+  // Landmarks 5 to 7 are as uncertain as they are far from landmarks 0 to 2.
+  auto c = onALine({{0, 0, 0}, {1, 1, 0}, {2, 2, 0}, {0, 5, 0}, {1, 6, 0}, {2, 7, 0}},
+                   {0.1, 0.1, 0.1, -0.9, -0.9, -0.9}, 1, 0.01);
+  ASSERT_TRUE(undisputed(c, {0, 1, 2}).empty());
+  c.covariance.bottomRightCorner<6, 6>() += Eigen::MatrixXd::Identity(6, 6);
+  EXPECT_EQ(undisputed(c, {0, 1, 2}).size(), 3u);
+}
+
 TEST(Compatibility, ALandmarkIsMatchedOnce) {
   const auto c = onALine({{0, 5, 0}, {1, 5, 0}}, {0.2, 0.1}, 1, 0.01);
   EXPECT_THAT(nearestNeighbours(c), ElementsAre(1u));
@@ -123,6 +176,7 @@ TEST(Compatibility, ALandmarkIsMatchedOnce) {
 TEST(Compatibility, NothingComesOfNothing) {
   EXPECT_TRUE(nearestNeighbours({}).empty());
   EXPECT_TRUE(jointCompatibility({}).empty());
+  EXPECT_TRUE(undisputed({}, {}).empty());
 }
 
 TEST(Prediction, HasTheCovarianceOfTheDenseInverse) {
@@ -205,6 +259,37 @@ TEST(UnknownAssociation, AFeatureBetweenTheGatesIsLeftOut) {
   EXPECT_EQ(decision(0.55).kind, Kind::kNew);
 }
 
+/** Six landmarks, one every 3 m, and then, from a place known to 2 m, five of them: half way between two
+ * places that fit if the landmarks stand in a row. */
+std::vector<FeatureAssociation> atARow(const std::vector<double>& offsets) {
+  auto first = submapOf({0, 0, 0}, {}, 1e-4), second = submapOf({1, 0, 0}, {}, 1e-4);
+  for (uint32_t i = 0; i < 6; ++i) first->features.push_back({i, 3.0 * i, 2 + offsets[i], 1});
+  for (uint32_t i = 0; i < 5; ++i) second->features.push_back({i, 3.0 * i + 1.4, 2 + offsets[i], 1});
+  second->id = 1;
+  for (const auto& submap : {first, second}) {
+    submap->covariance.setIdentity(submap->dimension());
+    submap->covariance *= 1e-4;
+  }
+  first->covariance(0, 0) = 4;
+  first->covariance(2, 2) = 1e-6;
+  const auto found = associateByPosition({first, second}, {}, {}, {});
+  EXPECT_TRUE(found);
+  const auto& all = found->associated.associations;
+  return {all.begin() + 6, all.end()};
+}
+
+TEST(UnknownAssociation, WhereTwoPlacesFitItIsLeftUndecided) {
+  for (const auto& a : atARow({0, 0, 0, 0, 0, 0})) EXPECT_EQ(a.kind, FeatureAssociation::Kind::kDropped);
+}
+
+TEST(UnknownAssociation, LandmarksOutOfTheRowDecide) {
+  uint32_t feature = 0;
+  for (const auto& a : atARow({0, 0, 0, 0, 4, 0})) {
+    EXPECT_EQ(a.kind, FeatureAssociation::Kind::kMatched);
+    EXPECT_EQ(a.landmark, ++feature);
+  }
+}
+
 TEST(UnknownAssociation, WithoutANeighbourThereIsNoDistance) {
   const auto submaps = simulateLandmarks({});
   const auto found = associateByPosition(submaps, {}, {}, {});
@@ -232,6 +317,21 @@ TEST(Merging, MakesOneOfWhatAgrees) {
   EXPECT_EQ(before - merges, truth);
   EXPECT_EQ(state.landmarks.size(), truth);
   EXPECT_EQ(associated.hits.size(), truth);
+}
+
+TEST(Merging, LeavesALandmarkThatIsMoreUncertainThanTheirSpacing) {
+  const auto merges = [](double sigma) {
+    auto first = submapOf({0, 0, 0}, {}, 1e-4);
+    for (uint32_t i = 0; i < 5; ++i) first->features.push_back({i, 3.0 * i, 2, 1});
+    first->covariance.setIdentity(first->dimension());
+    first->covariance *= 1e-4;
+    first->covariance(0, 0) = first->covariance(1, 1) = sigma * sigma;
+    auto associated = associateByIds({first, submapOf({1, 0, 0}, {{9, 6 + sigma, 2, 1}}, 1e-4)});
+    JointState state = joinBy({}, associated.problem, {}).state;
+    return mergeDuplicates(associated, state, 9.21, {});
+  };
+  EXPECT_EQ(merges(0.3), 1u);
+  EXPECT_EQ(merges(8), 0u);
 }
 
 TEST(Merging, LeavesWhatOneSubmapHoldsBothOf) {
