@@ -24,6 +24,12 @@ LandmarkMatch matchOf(const std::filesystem::path& associations) {
   return text.find(kind) != std::string::npos ? LandmarkMatch::kById : LandmarkMatch::kByPosition;
 }
 
+/** Beside grids, frames.csv has theirs. */
+std::filesystem::path framesFile(const std::filesystem::path& folder) {
+  const auto beside_grids = folder / "landmark_frames.csv";
+  return std::filesystem::exists(beside_grids) ? beside_grids : folder / "frames.csv";
+}
+
 void setFrames(LandmarkScores& scores, std::vector<FrameError> frames) {
   scores.frames = std::move(frames);
   const auto count = static_cast<double>(scores.frames.size());
@@ -49,7 +55,7 @@ LandmarkScores landmarkScores(const std::filesystem::path& folder, const std::st
   if (pairs.empty()) throw InputError("the truth has no time in common with the trajectory");
   const TPose2D T_truth_map = pairs.front().reference + (TPose2D() - pairs.front().estimate);
   LandmarkScores scores;
-  setFrames(scores, frameErrors(readTimedFrames((folder / "frames.csv").string()), truth, T_truth_map));
+  setFrames(scores, frameErrors(readTimedFrames(framesFile(folder).string()), truth, T_truth_map));
   if (true_landmarks.empty()) return scores;
   const LandmarkTruth landmarks = readLandmarkTruth(true_landmarks);
   setLandmarks(scores, folder, landmarks, T_truth_map);

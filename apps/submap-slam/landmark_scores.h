@@ -26,7 +26,8 @@ struct LandmarkScores {
 };
 
 /** Judges a result; the first pose of the estimate is taken to be the true one.
- * @param folder          a result with frames.csv, landmarks.csv and association.csv
+ * @param folder          a result with landmarks.csv, association.csv and frames.csv (beside grids:
+ *                        landmark_frames.csv)
  * @param submaps         file of the landmark submaps; empty: without local NEES
  * @param true_landmarks  file with their true places, or empty
  *
