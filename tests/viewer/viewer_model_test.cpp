@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 #include <submap_slam/core/errors.h>
 #include <submap_slam/output/graph_file.h>
+#include <submap_slam/output/landmark_files.h>
 #include <submap_slam/output/run_tables.h>
 #include <submap_slam/rawlog/landmark_log.h>
+#include <submap_slam/rawlog/submap_log.h>
 #include <submap_slam/viewer/viewer_source.h>
 
 #include <fstream>
@@ -165,6 +167,38 @@ TEST(ViewerSource, FilesOfLandmarkSubmapsAreShown) {
   ViewerModel model;
   EXPECT_EQ(openInto(model, folder.file("submaps.txt")), "");
   EXPECT_EQ(model.landmarkSubmaps().size(), 3u);
+}
+
+TEST(ViewerSource, LandmarkRunsAreShownWhereTheJoinerPutThem) {
+  const TempFolder folder;
+  const LandmarkSubmaps submaps = landmarkSubmaps(3);
+  {
+    std::ofstream out(folder.file("landmark_submaps.rawlog"), std::ios::binary);
+    for (const auto& submap : submaps) {
+      const std::string bytes = gzipMember(*submap);
+      out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    }
+  }
+  ViewerModel model;
+  EXPECT_EQ(openInto(model, folder.file("")), "");
+  EXPECT_DOUBLE_EQ(model.frames().back().y, 0) << "not joined yet: the chain";
+
+  JoinedLandmarks joined;
+  joined.frames.resize(4);
+  joined.frames[3].mean = mrpt::poses::CPose2D(27, 3, 0.25);
+  joined.frames[3].cov.setDiagonal(0.5);
+  joined.landmarks = {{7, 1.5, -2, {}, 4}, {8, 3, 4, {}, 5}};
+  joined.landmarks[1].covariance(0, 1) = joined.landmarks[1].covariance(1, 0) = 0.125;
+  writeFrames(folder.file("frames.csv"), submaps, joined);
+  writeLandmarks(folder.file("landmarks.csv"), joined.landmarks);
+  EXPECT_EQ(openInto(model, folder.file("")), "");
+  ASSERT_EQ(model.frames().size(), 4u);
+  EXPECT_EQ(model.frames()[0], TPose2D(0, 0, 0));
+  EXPECT_EQ(model.frames()[3], TPose2D(27, 3, 0.25));
+  EXPECT_EQ(model.joinedFrames()[3].cov(1, 1), 0.5);
+  ASSERT_EQ(model.joinedLandmarks().landmarks.size(), 2u);
+  EXPECT_EQ(model.joinedLandmarks().landmarks[1].covariance(1, 0), 0.125);
+  EXPECT_EQ(model.joinedLandmarks().landmarks[1].hits, 5u);
 }
 
 TEST(ViewerSource, WhatIsNoLogIsRefused) {

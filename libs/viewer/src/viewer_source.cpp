@@ -30,13 +30,35 @@ void readJoined(ViewerModel& model, const std::string& folder) {
 }
 
 std::string openLandmarks(ViewerModel& model, const std::string& file) {
-  model.setLandmarks(readLandmarkSubmaps(file));
-  return "";
+  RecoveredLandmarkSubmaps read = recoverLandmarkSubmaps(file);
+  model.setLandmarks(std::move(read.submaps));
+  return read.damage;
+}
+
+/** The result of a finished run; its table of frames has the poses where submaps end. */
+void readJoinedLandmarks(ViewerModel& model, const std::string& folder) {
+  const std::size_t submaps = model.landmarkSubmaps().size();
+  const std::string file = inFolder(folder, kFramesFile);
+  JoinedLandmarks joined;
+  joined.frames = readFrames(file);
+  if (joined.frames.size() < submaps)
+    throw InputError(fmt::format("{}: holds {} frames, expected those of {} submaps", file,
+                                 joined.frames.size(), submaps));
+  joined.frames.insert(joined.frames.begin(), mrpt::poses::CPosePDFGaussian());
+  joined.frames.resize(submaps + 1);
+  joined.landmarks = readLandmarks(inFolder(folder, "landmarks.csv"));
+  model.setJoinedLandmarks(std::move(joined));
+}
+
+std::string openLandmarkRun(ViewerModel& model, const std::string& folder) {
+  const std::string damage = openLandmarks(model, inFolder(folder, kLandmarkFile));
+  if (fs::exists(inFolder(folder, kFramesFile))) readJoinedLandmarks(model, folder);
+  return damage;
 }
 
 std::string openRun(ViewerModel& model, const std::string& folder) {
   const std::string submaps = inFolder(folder, kSubmapFile), landmarks = inFolder(folder, kLandmarkFile);
-  if (!fs::exists(submaps) && fs::exists(landmarks)) return openLandmarks(model, landmarks);
+  if (!fs::exists(submaps) && fs::exists(landmarks)) return openLandmarkRun(model, folder);
   if (!fs::exists(submaps))
     throw InputError(fmt::format("{}: holds no {}; expected the folder of a run", folder, kSubmapFile));
   RecoveredSubmaps read = recoverSubmaps(submaps);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <mrpt/poses/CPosePDFGaussian.h>
+#include <submap_slam/core/joined_landmarks.h>
 #include <submap_slam/core/joined_map.h>
 
 #include <string>
@@ -16,8 +17,11 @@ constexpr const char* kConstraintsFile = "constraints.csv";
  * triangle of the covariance (m², m·rad, rad²). Throws OutputError. */
 void writeFrames(const std::string& file, const std::vector<mrpt::poses::CPosePDFGaussian>& frames);
 
-/** Reads what writeFrames wrote. Throws InputError naming file and line. */
+/** Reads what writeFrames wrote, of grid or of landmark submaps. Throws InputError naming file and line. */
 std::vector<mrpt::poses::CPosePDFGaussian> readFrames(const std::string& file);
+
+/** Reads what writeLandmarks wrote. Throws InputError naming file and line. */
+std::vector<JoinedLandmark> readLandmarks(const std::string& file);
 
 /** Reads what writeConstraints wrote: of the covariance only the standard deviations are there. Throws
  * InputError naming file and line. */

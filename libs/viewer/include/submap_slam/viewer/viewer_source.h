@@ -10,7 +10,7 @@
 namespace submap_slam {
 
 /** Shows a rawlog, a file of submaps, or the folder of a run with its submaps, frames and constraints; of a
- * run that has landmarks alone, its submaps. Throws InputError if it is none of these; a damaged file is
+ * run that has landmarks alone, its submaps, their frames and the joined landmarks. Throws InputError if it is none of these; a damaged file is
  * shown up to the damage.
  * @return what is wrong with the file; empty: nothing */
 std::string openInto(ViewerModel& model, const std::string& file_or_folder);
