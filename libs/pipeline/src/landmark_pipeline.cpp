@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <submap_slam/core/errors.h>
+#include <submap_slam/core/landmark_consistency.h>
 #include <submap_slam/eval/trajectory_error.h>
 #include <submap_slam/output/json_file.h>
 #include <submap_slam/output/landmark_files.h>
@@ -67,20 +68,6 @@ void writeLandmarkResults(const OutputDirectory& out, const std::string& prefix,
   writeLandmarksSoFar(out, prefix, joined, path);
   writeLandmarkScene(out.file(prefix + "map.3Dscene"), joined, path);
   writeAssociations(out.file("association.csv"), joined.associations);
-}
-
-/** Says so where the submaps do not fit together: the objective is then far above its χ² distribution. */
-void checkConsistency(const LandmarkSubmaps& submaps, const JoinedLandmarks& joined, Reporter& reporter) {
-  double observed = 0;
-  for (const auto& submap : submaps) observed += static_cast<double>(submap->dimension());
-  const double freedom = observed - static_cast<double>(3 * submaps.size() + 2 * joined.landmarks.size());
-  constexpr double kUsual = 3;  // covariances of filters are often too small by as much
-  const double expected = kUsual * (freedom + 5 * std::sqrt(2 * freedom));
-  if (joined.status == JoinStatus::kFailed || freedom <= 0 || joined.objective <= expected) return;
-  reporter.warning(
-      fmt::format("the landmark submaps contradict each other: objective {:.4g} at {} degrees of freedom; {}",
-                  joined.objective, freedom,
-                  joined.association_known ? "ids may be wrong" : "landmarks may be matched wrongly"));
 }
 
 /** m */
@@ -161,7 +148,7 @@ FinishedMap LandmarkHalf::finish(const LandmarkSubmaps& submaps, const Trajector
   reporter_.log(fmt::format("{} landmark submaps", submaps.size()));
   JoinedLandmarks joined = join(submaps, summary.interrupted);
   reportResult(joiner_, joined, reporter_);
-  checkConsistency(submaps, joined, reporter_);
+  if (const auto text = describeContradiction(submaps, joined); !text.empty()) reporter_.warning(text);
   addTime(metrics, "join_", join_timer);
   addStage(summary.metrics, join_timer.record(joiner_.name()));
   summary.failed = joined.status == JoinStatus::kFailed;
