@@ -91,11 +91,6 @@ void EifTree::describe(ParameterTable& table) {
 void EifTree::validate() const {
   if (association_options_.new_gate < association_options_.match_gate)
     throw ConfigError("[eif_tree] new_gate must not be less than match_gate");
-  if (association_ != "known" && method_ != "tree_gn")
-    throw ConfigError(
-        fmt::format("[eif_tree] association = {} has a joining of its own; it cannot be combined with "
-                    "method = {}",
-                    association_, method_));
 }
 
 JoiningOptions EifTree::joiningOptions() const {
@@ -160,11 +155,14 @@ JoinedLandmarks EifTree::joinUnknown(const LandmarkSubmaps& submaps,
                                    [&](double share) { return progress(kAssociationShare * share); });
   JoinedLandmarks joined;
   if (found) {
-    joined =
-        resultOf(found->associated,
-                 joinFrom(found->state, found->associated.problem, options_.gauss_newton, [&](double share) {
-                   return progress(kAssociationShare + (1 - kAssociationShare) * share);
-                 }));
+    const auto rest = [&](double share) {
+      return progress(kAssociationShare + (1 - kAssociationShare) * share);
+    };
+    // Associating leaves an estimate that needs but a few steps more; the other methods join the pairs anew.
+    joined = resultOf(found->associated,
+                      method_ == "tree_gn"
+                          ? joinFrom(found->state, found->associated.problem, options_.gauss_newton, rest)
+                          : joinBy(joiningOptions(), found->associated.problem, rest));
     if (found->associated_submaps < submaps.size() && joined.status != JoinStatus::kFailed) {
       joined.status = JoinStatus::kIterationLimit;
       joined.reason = fmt::format("stopped after {} of {} submaps were associated; the others are chained",

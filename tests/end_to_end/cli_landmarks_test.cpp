@@ -184,10 +184,7 @@ TEST_F(CliLandmarks, BadInputIsRefusedInOneLine) {
       "no plugin offers the joiner 'grid_gauss_newton'");
 }
 
-TEST_F(CliLandmarks, UnknownAssociationThatCannotTakeEffectIsRefused) {
-  expectRefused(
-      run({"join", path("s.txt"), "-o", path("a"), "--unknown-association", "--set", "eif_tree.method=ekf"}),
-      "association = jcbb");
+TEST_F(CliLandmarks, UnknownAssociationOfGridsIsRefused) {
   expectRefused(run({"join", log("room.rawlog"), "-o", path("b"), "--unknown-association"}),
                 "--unknown-association: expected a file of landmark submaps");
 }
@@ -202,6 +199,15 @@ TEST_F(CliLandmarks, AJoinThatFailsSaysSoAndExitsWithAnError) {
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("the submaps could not be joined: the state has 8100 elements"));
   EXPECT_EQ(metrics("out")["join_status"], "failed");
+}
+
+TEST_F(CliLandmarks, WhatIsBeforeADamageIsJoined) {
+  const std::string whole = contentOf(path("s.rawlog"));
+  writeFile(path("s.rawlog"), whole.substr(0, whole.size() - 20));
+  const Outcome outcome = run({"join", path("s.rawlog"), "-o", path("out"), "-q"});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("; the submaps before it are joined"));
+  EXPECT_EQ(metrics("out")["submaps"], kSides - 1);
 }
 
 TEST_F(CliLandmarks, CovariancesThatAreNotFiniteAreRefused) {

@@ -172,11 +172,13 @@ RunSummary joinLandmarkFile(const std::string& submap_file, const std::string& f
   const StageTimer timer;
   RunSummary summary;
   const auto joiner = config.landmarkJoiner();
-  const LandmarkSubmaps submaps = readLandmarkSubmaps(submap_file);
+  const RecoveredLandmarkSubmaps read = recoverLandmarkSubmaps(submap_file);
+  summary.damaged = !read.damage.empty();
+  if (summary.damaged) reporter.warning(read.damage + kRestIsJoined);
   const OutputDirectory out(folder, overwrite);
   addTimedStage(summary.metrics, "read", timer);
   LandmarkHalf half(*joiner, out, false, config.joining.update_growth, reporter);
-  const FinishedMap map = half.finish(submaps, {}, summary);
+  const FinishedMap map = half.finish(read.submaps, {}, summary);
   finishRun({submap_file, out, config, reporter, timer}, summary.metrics, map.report);
   return summary;
 }

@@ -237,7 +237,7 @@ RunSummary joinFile(const std::string& submap_file, const std::string& folder, b
   EditedSubmaps submaps(edits);
   submaps.add(read.submaps);
   summary.damaged = !read.damage.empty();
-  if (summary.damaged) reporter.warning(read.damage + "; the submaps before it are joined");
+  if (summary.damaged) reporter.warning(read.damage + kRestIsJoined);
   const Run run{submap_file, out, config, reporter, timer};
   const FinishedMap map = joinAndWrite(run, submaps, joining, *store, summary);
   finishRun(run, summary.metrics, map.report);

@@ -21,6 +21,9 @@ constexpr const char* kReportFile = "report.html";
 constexpr const char* kMetricsFile =
     "metrics.json";  ///< written last: a folder that has it holds a finished run
 
+/** What is said behind the damage of a file of submaps. */
+constexpr const char* kRestIsJoined = "; the submaps before it are joined";
+
 /** Throws ConfigError if the file of submaps is there and finished. */
 void refuseFinished(const std::string& submap_file);
 
