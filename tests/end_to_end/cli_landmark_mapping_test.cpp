@@ -203,7 +203,7 @@ void addLandmarks(const std::string& log, const std::string& truth, const std::s
   }
 }
 
-TEST_F(CliLandmarkMapping, GridsAndLandmarksAlongOnePathAgree) {
+TEST_F(CliLandmarkMapping, GridsAndLandmarksOfTheSameSubmapsAgree) {
   addLandmarks(log("loop.rawlog"), log("loop.truth.tum"), path("both.rawlog"));
   succeed(map("both.rawlog", "out", {"--set", "mapping.maps=grid, landmarks"}));
   const auto results = contentsOf(path("out"));
