@@ -17,7 +17,7 @@ LogReport reportOf(const LogBuilder& log) {
 }
 
 TEST(LogReport, CountsPathGapsAndJumps) {
-  LogBuilder log;  // steps of 3-4-5 m, of 0.5 m and of a half turn
+  LogBuilder log;  // steps of 3-4-5 m, of 0.5 m and of a half turn; the first is not measured by any before
   log.add(odometryAt(0, 0, 0, 0)).add(scanAt(0)).add(odometryAt(1, 3, 4, 0)).add(scanAt(1));
   log.add(odometryAt(8, 3, 4.5, 0)).add(scanAt(8)).add(odometryAt(9, 3, 4.5, 3)).add(scanAt(9));
   const auto report = reportOf(log);
@@ -25,8 +25,8 @@ TEST(LogReport, CountsPathGapsAndJumps) {
   EXPECT_NEAR(report.path_length_m, 5.5, 1e-9);
   EXPECT_NEAR(report.largest_step_m, 5.0, 1e-9);
   EXPECT_NEAR(report.largest_step_rad, 3.0, 1e-9);
-  EXPECT_EQ(report.long_steps, 2u);
-  EXPECT_EQ(report.odometry_jumps, 2u);
+  EXPECT_EQ(report.sparse_steps, 2u);
+  EXPECT_EQ(report.odometry_jumps, 1u);
   EXPECT_NEAR(report.largest_gap_s, 7.0, 1e-6);
   EXPECT_NEAR(report.duration_s(), 9.0, 1e-6);
   EXPECT_EQ(report.bytes_read, report.file_bytes);
@@ -84,9 +84,17 @@ TEST(LogReport, AFastVehicleDoesNotJump) {
     fast.add(odometryAt(0.2 * k, x, 0, 0)).add(scanAt(0.2 * k));
     resets.add(odometryAt(0.2 * k, k < 50 ? x : x - 20, 0, 0)).add(scanAt(0.2 * k));
   }
-  EXPECT_GT(reportOf(fast).long_steps, 40u);
   EXPECT_EQ(reportOf(fast).odometry_jumps, 0u);
+  EXPECT_TRUE(reportOf(fast).findings.empty()) << "steps of 1.8 m five times a second: " << x << " m";
   EXPECT_GE(reportOf(resets).odometry_jumps, 1u);
+  EXPECT_THAT(reportOf(resets).asText(), HasSubstr("warning: Odometry jumps at"));
+  EXPECT_THAT(reportOf(resets).asText(), Not(HasSubstr("sparse")));
+}
+
+TEST(LogReport, ALogMayBeginAtSpeed) {
+  LogBuilder log;
+  for (int k = 0; k < 20; ++k) log.add(odometryAt(0.2 * k, 1.8 * k, 0, 0)).add(scanAt(0.2 * k));
+  EXPECT_TRUE(reportOf(log).findings.empty()) << reportOf(log).asText();
 }
 
 TEST(LogReport, SaysWhatTheLackOfOdometryMeansForEachMap) {
@@ -108,21 +116,26 @@ TEST(LogReport, SaysWhatTheLackOfOdometryMeansForEachMap) {
 
 TEST(LogReport, SaysThatAVehicleLacksItsVelocities) {
   LogBuilder log;
-  log.add(scanAt(0)).add(scanAt(1));
+  log.add(scanAt(0)).add(scanAt(1)).add(scanAt(1));
   TempFolder temp;
   ReaderParams params;
   params.vehicle.model = "ackermann";
-  EXPECT_THAT(checkLog(log.saveGz(temp.file("a.rawlog")), params).asText(),
-              HasSubstr("warning: [vehicle] model = ackermann needs velocities"));
+  const LogReport report = checkLog(log.saveGz(temp.file("a.rawlog")), params);
+  EXPECT_THAT(report.asText(), HasSubstr("warning: [vehicle] model = ackermann needs velocities"));
+  EXPECT_EQ(report.findings.back().severity, Severity::kInfo) << "equal stamps, behind all warnings";
 }
 
 TEST(LogReport, SparseLogIsNotBlamedForJumps) {
-  LogBuilder sparse, reset;
+  LogBuilder sparse, reset, sparse_reset;
   for (int k = 0; k < 20; ++k) {
     sparse.add(odometryAt(k, 2.0 * k, 0, 0)).add(scanAt(k));
+    sparse_reset.add(odometryAt(k, k < 10 ? 2.0 * k : 2.0 * k - 20, 0, 0)).add(scanAt(k));
     reset.add(odometryAt(k, k < 10 ? 10 : 0, 0, 0)).add(scanAt(k));
   }
-  EXPECT_THAT(reportOf(sparse).asText(), HasSubstr("sparse"));
+  EXPECT_THAT(reportOf(sparse).asText(), HasSubstr("info: The log is sparse: 19 of 20 steps"));
+  EXPECT_THAT(reportOf(sparse).asText(), Not(HasSubstr("jumps")));
+  EXPECT_THAT(reportOf(sparse_reset).asText(), HasSubstr("warning: Odometry jumps at 1 frames"));
+  EXPECT_THAT(reportOf(sparse_reset).asText(), HasSubstr("sparse"));
   EXPECT_THAT(reportOf(reset).asText(), HasSubstr("Odometry jumps"));
   EXPECT_THAT(reportOf(reset).asText(), Not(HasSubstr("sparse")));
 }

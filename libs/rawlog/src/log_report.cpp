@@ -11,7 +11,7 @@ namespace submap_slam {
 namespace {
 
 constexpr double kLargeGap_s = 5.0;
-constexpr double kSparseShare = 0.1;  // share of steps that "jump" from which the log is rather sparse
+constexpr double kSparseShare = 0.1;  // share of long steps from which the log is sparse
 constexpr double kBurstShare = 0.05;  // share of steps in bursts worth a word
 constexpr double kNoReturnShare = 0.5;
 
@@ -100,13 +100,13 @@ void assessOdometry(const LogReport& r, Findings& add) {
   add.add(r.frames_with_odometry > 0 && without > 0, Severity::kWarning,
           "{} of {} frames have no odometry reading within {} s.", without, r.frames,
           OdometryTrack::kHoldSeconds);
-  const bool sparse = share(r.long_steps, r.frames) > kSparseShare;
-  add.add(sparse, Severity::kInfo,
-          "The log is sparse: {} of {} steps between frames are longer than 1 m or 45 deg; matching needs a "
-          "wide search.",
-          r.long_steps, r.frames);
   add.add(
-      !sparse && r.odometry_jumps > 0, Severity::kWarning,
+      share(r.sparse_steps, r.frames) > kSparseShare, Severity::kInfo,
+      "The log is sparse: {} of {} steps between frames take more than 0.5 s and are longer than 1 m or 45 "
+      "deg; matching needs a wide search.",
+      r.sparse_steps, r.frames);
+  add.add(
+      r.odometry_jumps > 0, Severity::kWarning,
       "Odometry jumps at {} frames, by more than 1 m or 45 deg beyond the speed before (the largest step is "
       "{:.2f} m, {:.0f} deg): lost data or a reset of the odometry.",
       r.odometry_jumps, r.largest_step_m, mrpt::RAD2DEG(r.largest_step_rad));
@@ -220,7 +220,7 @@ std::string LogReport::asText() const {
   return text;
 }
 
-std::vector<Finding> assess(const LogReport& report) {
+std::vector<Finding> assess(const LogReport& report, const VehicleParams& vehicle) {
   std::vector<Finding> findings;
   Findings add(findings);
   assessContent(report, add);
@@ -228,6 +228,8 @@ std::vector<Finding> assess(const LogReport& report) {
   assessOdometry(report, add);
   for (const auto& [label, scanner] : report.scanners) assessScanner(label, scanner, add);
   for (const auto& [label, sensor] : report.landmark_sensors) assessLandmarks(label, sensor, add);
+  add.add(vehicle.usesVelocities() && report.odometry_readings == 0, Severity::kWarning,
+          "[vehicle] model = {} needs velocities, but the log has no odometry.", vehicle.model);
   std::stable_sort(findings.begin(), findings.end(),
                    [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
   return findings;

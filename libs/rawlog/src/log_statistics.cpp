@@ -15,6 +15,7 @@ namespace {
 constexpr double kBurstStep_s = 0.01;
 constexpr double kJump_m = 1.0;
 const double kJump_rad = mrpt::DEG2RAD(45.0);
+constexpr double kSparseStep_s = 0.5;
 
 /** Some converters compute the sensor pose anew for each scan: differences that move no beam visibly are
  * none. */
@@ -29,8 +30,13 @@ bool sameGeometry(const mrpt::obs::CObservation2DRangeScan& a, const mrpt::obs::
          a.rightToLeft == b.rightToLeft && samePose(a.sensorPose.asTPose(), b.sensorPose.asTPose());
 }
 
-/** Whether a step is no movement like those before; the step then counts to these. */
+/** Whether a step is no movement like those before, to which it counts from then on; the first of all steps
+ * may be of any speed. */
 bool isJump(RecentRate& rate, double step, double seconds, double threshold) {
+  if (!rate.known()) {
+    rate.add(step, seconds);
+    return false;
+  }
   const double largest = threshold + 2 * rate.over(seconds);
   rate.add(std::min(step, largest), seconds);
   return step > largest;
@@ -43,6 +49,7 @@ void RecentRate::add(double change, double seconds) {
   const double left = std::exp(-seconds / kMemory_s);
   change_ = left * change_ + change;
   time_s_ = left * time_s_ + seconds;
+  known_ = true;
 }
 
 void LogStatistics::add(Frame& frame, double min_range, LogReport& report) {
@@ -94,7 +101,7 @@ void LogStatistics::addStep(const mrpt::math::TPose2D& from, const Frame& to, Lo
   report.path_length_m += step_m;
   report.largest_step_m = std::max(report.largest_step_m, step_m);
   report.largest_step_rad = std::max(report.largest_step_rad, step_rad);
-  if (step_m > kJump_m || step_rad > kJump_rad) ++report.long_steps;
+  if (seconds > kSparseStep_s && (step_m > kJump_m || step_rad > kJump_rad)) ++report.sparse_steps;
   const bool leaps = isJump(speed_, step_m, seconds, kJump_m);
   const bool spins = isJump(turn_rate_, step_rad, seconds, kJump_rad);
   if (leaps || spins) ++report.odometry_jumps;

@@ -17,8 +17,12 @@ class RecentRate {
 
   void add(double change, double seconds);
 
+  /** Whether anything was added. */
+  bool known() const { return known_; }
+
  private:
   double change_ = 0, time_s_ = 0;  ///< faded sums
+  bool known_ = false;
 };
 
 /** Adds delivered frames to the counts of a report. */

@@ -325,12 +325,7 @@ void RawlogReader::Impl::noteStamp(mrpt::Clock::time_point stamp) {
 void RawlogReader::Impl::end(const std::optional<LogDamage>& found) {
   ended = true;
   report.damage = found;
-  report.findings = assess(report);
-  if (params.vehicle.usesVelocities() && report.odometry_readings == 0)
-    report.findings.push_back(
-        {Severity::kWarning,
-         fmt::format("[vehicle] model = {} needs velocities, but the log has no odometry.",
-                     params.vehicle.model)});
+  report.findings = assess(report, params.vehicle);
   if (report.damage) throw InputError(report.damage->text);
   if (report.frames == 0) throw InputError(fmt::format("{}: {}", report.file, whyNoFrames(report, params)));
 }

@@ -3,6 +3,7 @@
 #include <mrpt/core/Clock.h>
 #include <mrpt/math/TPose2D.h>
 #include <mrpt/math/TPose3D.h>
+#include <submap_slam/core/vehicle_model.h>
 
 #include <cstdint>
 #include <map>
@@ -92,7 +93,7 @@ struct LogReport {
 
   uint64_t odometry_readings = 0;  ///< CObservationOdometry, or increments in actions
   uint64_t frames_with_odometry = 0;
-  uint64_t long_steps = 0;      ///< steps of more than 1 m or 45° between consecutive frames
+  uint64_t sparse_steps = 0;    ///< steps of more than 1 m or 45° that take longer than 0.5 s
   uint64_t odometry_jumps = 0;  ///< steps of more than 1 m or 45° beyond twice what the recent speed explains
   double largest_step_m = 0, largest_step_rad = 0;
   double path_length_m = 0;         ///< by odometry
@@ -119,7 +120,8 @@ struct LogReport {
   std::string asText() const;
 };
 
-/** The findings that follow from the counts, most severe first. */
-std::vector<Finding> assess(const LogReport& report);
+/** The findings that follow from the counts, and from what the vehicle needs of the log, most severe first.
+ */
+std::vector<Finding> assess(const LogReport& report, const VehicleParams& vehicle = {});
 
 }  // namespace submap_slam
