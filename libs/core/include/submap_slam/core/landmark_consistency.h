@@ -15,11 +15,12 @@ struct Misfit {
   double distance2 = 0;  ///< squared Mahalanobis distance by the feature's covariance in its submap
 };
 
-/** The feature that fits worst; nothing if no submap has any. */
+/** The feature that fits worst; nothing if no submap has any. Requires of `joined` a frame for each submap and
+ * an association for each feature, those of the submaps one behind the other. */
 std::optional<Misfit> worstMisfit(const LandmarkSubmaps& submaps, const JoinedLandmarks& joined);
 
 /** Says so where submaps do not fit together, and which feature fits worst: the objective is then far above
- * its χ² distribution. Else empty. */
+ * its χ² distribution. Else empty. Requires the same as worstMisfit(), unless joining failed. */
 std::string describeContradiction(const LandmarkSubmaps& submaps, const JoinedLandmarks& joined);
 
 }  // namespace submap_slam

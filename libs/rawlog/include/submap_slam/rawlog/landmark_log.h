@@ -7,7 +7,8 @@
 namespace submap_slam {
 
 /** True if the file begins as a sequence of landmark submaps in either form that readLandmarkSubmaps() takes,
- * gzip or not. Throws InputError if it cannot be opened. */
+ * gzip or not. Text is known by its first line that is neither blank nor a comment, which must begin in the
+ * first 16 kB. Throws InputError if it cannot be opened. */
 bool holdsLandmarkSubmaps(const std::string& file);
 
 /** Landmark submaps in the order of the path; ids are set to their position. The file is a rawlog of
