@@ -29,10 +29,9 @@ std::vector<GpsFix> withoutOutliers(const std::vector<GpsFix>& fixes, double max
 
 std::vector<PosePair> antennaPairs(const TimedTrajectory& trajectory, const std::vector<GpsFix>& fixes,
                                    const TPoint2D& antenna, double max_gap_s) {
-  constexpr double kTolerance_s = 1e-3;
   std::vector<PosePair> pairs;
   for (const GpsFix& fix : fixes) {
-    const auto pose = trajectory.at(fix.t, kTolerance_s, max_gap_s);
+    const auto pose = trajectory.at(fix.t, TimedTrajectory::kTolerance_s, max_gap_s);
     if (!pose) continue;
     const TPoint2D at = toPose2D(*pose).composePoint(antenna);
     pairs.push_back({fix.t, {fix.position.x, fix.position.y, 0}, {at.x, at.y, 0}});

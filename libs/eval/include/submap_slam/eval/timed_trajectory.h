@@ -46,10 +46,12 @@ class TimedTrajectory {
 
   const std::vector<TimedPose>& poses() const { return poses_; }
 
+  static constexpr double kTolerance_s = 1e-3;  ///< for stamps that were rounded
+
   /** The pose at time t (s): the nearest one if it is within `tolerance` s, else interpolated (slerp for the
    * rotation) between its two neighbours if these are at most `max_gap` s apart; nothing before the first and
    * after the last pose. */
-  std::optional<Pose3D> at(double t, double tolerance = 1e-3, double max_gap = 5) const;
+  std::optional<Pose3D> at(double t, double tolerance = kTolerance_s, double max_gap = 5) const;
 
  private:
   std::vector<TimedPose> poses_;
