@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <set>
 
@@ -95,7 +96,8 @@ std::vector<std::size_t> byDistanceGiven(const Candidates& all, std::size_t pair
     const Eigen::Matrix2d s =
         all.covariance.block<2, 2>(row, row) - gain.middleRows<2>(row) * all.covariance.block<2, 2>(at, row);
     const Eigen::Vector2d v = innovation.segment<2>(row);
-    distances2.push_back(row == at ? 0 : v.dot(s.inverse() * v));
+    const double distance2 = row == at ? 0 : v.dot(s.inverse() * v);
+    distances2.push_back(std::isfinite(distance2) ? distance2 : std::numeric_limits<double>::infinity());
   }
   return ascending(distances2);
 }
@@ -255,6 +257,7 @@ std::vector<std::size_t> convincing(const Candidates& candidates, const std::vec
 
 std::vector<std::size_t> undisputed(const Candidates& candidates, const std::vector<std::size_t>& set) {
   std::vector<std::size_t> left = set;
+  std::sort(left.begin(), left.end());
   std::vector<bool> met(candidates.pairings.size());
   for (const std::size_t i : set) met[i] = true;
   for (std::size_t seed = 0; seed < met.size(); ++seed) {

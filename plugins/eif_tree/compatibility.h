@@ -50,7 +50,7 @@ std::vector<std::size_t> convincing(const Candidates& candidates, const std::vec
  * features that both pair (with the usual gate 99 % against 1 %). How many features each explains says little
  * where landmarks repeat; see jointUnlessNearestExplain(). A single feature that may be either of two
  * landmarks does not make a place doubtful: it stays with the likelier one.
- * @return indices of pairings, ascending if any is disputed */
+ * @return indices of pairings, ascending */
 std::vector<std::size_t> undisputed(const Candidates& candidates, const std::vector<std::size_t>& set);
 
 /** Largest joint squared distance, with as many degrees of freedom, that is as likely as a distance of

@@ -156,6 +156,7 @@ TEST(Compatibility, WhatEveryRivalHoldsTooIsCertain) {
 TEST(Compatibility, OneFeatureOfTwoLandmarksMakesNoPlaceDoubtful) {
   const auto c = onALine({{0, 0, 0}, {1, 1, 0}, {2, 2, 0}, {2, 3, 0}}, {0, 0, 0.2, -0.2}, 1, 0.01);
   EXPECT_THAT(undisputed(c, {0, 1, 2}), ElementsAre(0u, 1u, 2u));
+  EXPECT_THAT(undisputed(c, {2, 0, 1}), ElementsAre(0u, 1u, 2u)) << "in whatever order they were found";
 }
 
 TEST(Compatibility, LandmarksThatMayBeOneDisputeNothing) {
