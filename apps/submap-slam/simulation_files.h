@@ -16,9 +16,10 @@ struct SimulationFiles {
   std::string truth;     ///< PREFIX.truth.tum, the true pose at each scan
   std::string odometry;  ///< PREFIX.odometry.tum, the pose by odometry at each scan
   std::string ini;       ///< PREFIX.ini, the effective [simulation]
-  std::string
-      map_ini;  ///< PREFIX.map.ini, what `map` has to know of the car; empty for a world without landmarks
-  std::string landmarks;  ///< PREFIX.landmarks.csv, true places (id,x,y); empty for a world without any
+
+  // empty for a world without landmarks
+  std::string map_ini;    ///< PREFIX.map.ini, what `map` has to know of the car
+  std::string landmarks;  ///< PREFIX.landmarks.csv, true places (id,x,y)
 
   std::vector<std::string> all() const;
 };
