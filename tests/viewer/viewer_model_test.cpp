@@ -180,7 +180,7 @@ TEST(ViewerSource, LandmarkRunsAreShownWhereTheJoinerPutThem) {
     }
   }
   ViewerModel model;
-  EXPECT_EQ(openInto(model, folder.file("")), "");
+  EXPECT_THAT(openInto(model, folder.file("")), HasSubstr("holds no finished result"));
   EXPECT_DOUBLE_EQ(model.frames().back().y, 0) << "not joined yet: the chain";
 
   JoinedLandmarks joined;
@@ -191,6 +191,10 @@ TEST(ViewerSource, LandmarkRunsAreShownWhereTheJoinerPutThem) {
   joined.landmarks[1].covariance(0, 1) = joined.landmarks[1].covariance(1, 0) = 0.125;
   writeFrames(folder.file("frames.csv"), submaps, joined);
   writeLandmarks(folder.file("landmarks.csv"), joined.landmarks);
+  EXPECT_THAT(openInto(model, folder.file("")), HasSubstr("holds no finished result"))
+      << "frames of an earlier run";
+  EXPECT_DOUBLE_EQ(model.frames().back().y, 0);
+  std::ofstream(folder.file("metrics.json")) << "{}";
   EXPECT_EQ(openInto(model, folder.file("")), "");
   ASSERT_EQ(model.frames().size(), 4u);
   EXPECT_EQ(model.frames()[0], TPose2D(0, 0, 0));
@@ -199,6 +203,15 @@ TEST(ViewerSource, LandmarkRunsAreShownWhereTheJoinerPutThem) {
   ASSERT_EQ(model.joinedLandmarks().landmarks.size(), 2u);
   EXPECT_EQ(model.joinedLandmarks().landmarks[1].covariance(1, 0), 0.125);
   EXPECT_EQ(model.joinedLandmarks().landmarks[1].hits, 5u);
+
+  for (const uint32_t frames : {2, 4}) {
+    const auto others = landmarkSubmaps(frames);
+    joined.frames.resize(frames + 1);
+    writeFrames(folder.file("frames.csv"), others, joined);
+    EXPECT_THAT(openInto(model, folder.file("")),
+                HasSubstr("holds " + std::to_string(frames) + " frames, expected those of 3 submaps"));
+    EXPECT_DOUBLE_EQ(model.frames().back().y, 0) << "the chain";
+  }
 }
 
 TEST(ViewerSource, WhatIsNoLogIsRefused) {

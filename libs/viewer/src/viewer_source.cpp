@@ -35,25 +35,29 @@ std::string openLandmarks(ViewerModel& model, const std::string& file) {
   return read.damage;
 }
 
-/** The result of a finished run; its table of frames has the poses where submaps end. */
-void readJoinedLandmarks(ViewerModel& model, const std::string& folder) {
+/** Takes over the result if the run has finished and it is that of these submaps; its table of frames has the
+ * poses where they end.
+ * @return else why they are shown as a chain */
+std::string readJoinedLandmarks(ViewerModel& model, const std::string& folder) {
   const std::size_t submaps = model.landmarkSubmaps().size();
   const std::string file = inFolder(folder, kFramesFile);
+  if (!fs::exists(inFolder(folder, kMetricsFile)) || !fs::exists(file))
+    return fmt::format("{}: holds no finished result; its submaps are shown as a chain", folder);
   JoinedLandmarks joined;
   joined.frames = readFrames(file);
-  if (joined.frames.size() < submaps)
-    throw InputError(fmt::format("{}: holds {} frames, expected those of {} submaps", file,
-                                 joined.frames.size(), submaps));
+  if (joined.frames.size() != submaps)
+    return fmt::format("{}: holds {} frames, expected those of {} submaps, which are shown as a chain", file,
+                       joined.frames.size(), submaps);
   joined.frames.insert(joined.frames.begin(), mrpt::poses::CPosePDFGaussian());
-  joined.frames.resize(submaps + 1);
   joined.landmarks = readLandmarks(inFolder(folder, "landmarks.csv"));
   model.setJoinedLandmarks(std::move(joined));
+  return {};
 }
 
 std::string openLandmarkRun(ViewerModel& model, const std::string& folder) {
   const std::string damage = openLandmarks(model, inFolder(folder, kLandmarkFile));
-  if (fs::exists(inFolder(folder, kFramesFile))) readJoinedLandmarks(model, folder);
-  return damage;
+  const std::string unjoined = readJoinedLandmarks(model, folder);
+  return damage.empty() ? unjoined : damage;
 }
 
 std::string openRun(ViewerModel& model, const std::string& folder) {
