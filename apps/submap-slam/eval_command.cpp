@@ -99,13 +99,13 @@ Json evaluateAgainstReference(const EvalOptions& options, const TimedTrajectory&
 bool isFolder(const EvalOptions& options) { return fs::is_directory(options.result); }
 
 bool hasLandmarks(const EvalOptions& options) {
-  return isFolder(options) && fs::exists(fs::path(options.result) / "landmarks.csv");
+  return isFolder(options) && formsOf(options.result).landmarks;
 }
 
-Json evaluateLandmarks(const EvalOptions& options, const TimedTrajectory& trajectory) {
+Json evaluateLandmarks(const EvalOptions& options) {
   const fs::path submaps = fs::path(options.result) / kLandmarkFile;
   const LandmarkScores scores = landmarkScores(options.result, fs::exists(submaps) ? submaps.string() : "",
-                                               trajectory, readTum(options.reference), options.landmarks);
+                                               readTum(options.reference), options.landmarks);
   if (!options.json) fmt::print("{}", landmarkTable(scores));
   Json figures;
   addLandmarkScores(figures, scores);
@@ -120,7 +120,7 @@ void checkTruth(const EvalOptions& options) {
     throw ConfigError("eval: --landmarks needs --reference T.tum, which tells where the map begins");
   if (!hasLandmarks(options))
     throw InputError(
-        fmt::format("{}: --landmarks: expected the folder of a result with landmarks.csv", options.result));
+        fmt::format("{}: --landmarks: expected the folder of a result with landmarks", options.result));
 }
 
 int runEval(EvalOptions& options) {
@@ -132,8 +132,7 @@ int runEval(EvalOptions& options) {
   Json result;
   if (!options.relations.empty()) result["relations"] = evaluateAgainstRelations(options, trajectory);
   if (!options.reference.empty()) result["reference"] = evaluateAgainstReference(options, trajectory);
-  if (!options.reference.empty() && hasLandmarks(options))
-    result["landmarks"] = evaluateLandmarks(options, trajectory);
+  if (!options.reference.empty() && hasLandmarks(options)) result["landmarks"] = evaluateLandmarks(options);
   if (options.json) fmt::print("{}\n", result.dump(2));
   return kSuccess;
 }

@@ -120,12 +120,8 @@ struct Estimate {
   std::optional<EvidenceGrid> map;
 };
 
-/** @param submaps the log holds landmark submaps, which are joined */
-Estimate runPipeline(const Cell& cell, const Configuration& config, bool submaps, Metrics& figures) {
-  TerminalReporter reporter(true);
-  const std::string folder = cell.folder.string();
-  const RunSummary summary = submaps ? joinLandmarkFile(cell.log, folder, true, config, reporter)
-                                     : mapRawlog(cell.log, folder, true, config, reporter);
+/** What a run of the pipeline wrote into the cell's folder. */
+Estimate estimateOf(const Cell& cell, const RunSummary& summary, Metrics& figures) {
   if (summary.interrupted) throw Interrupted();
   figures = summary.metrics;
   const double iterations = figures["join_iterations"].get<double>();
@@ -157,8 +153,8 @@ Estimate runBaseline(const Cell& cell, const Configuration& config, const std::v
 }
 
 void judgeLandmarks(Metrics& figures, const Cell& cell, const std::string& submaps,
-                    const TimedTrajectory& estimate, const TimedTrajectory& truth) {
-  const LandmarkScores scores = landmarkScores(cell.folder, submaps, estimate, truth, cell.landmarks);
+                    const TimedTrajectory& truth) {
+  const LandmarkScores scores = landmarkScores(cell.folder, submaps, truth, cell.landmarks);
   writeText((cell.folder / kConsistencyFile).string(), frameErrorsCsv(scores.frames));
   addLandmarkScores(figures, scores);
 }
@@ -171,7 +167,7 @@ void addScores(Metrics& figures, const Cell& cell, const Configuration& config, 
     const TimedTrajectory truth = readTum(cell.truth);
     addPoseScores(figures, path, truth);
     if (estimate.map) addMapScores(figures, *estimate.map, path, truth, frames, config.mapper);
-    if (!submaps.empty()) judgeLandmarks(figures, cell, submaps, path, truth);
+    if (!submaps.empty()) judgeLandmarks(figures, cell, submaps, truth);
   }
   if (!cell.data.relations.empty()) addRelationScores(figures, path, cell.data.relations);
   if (!cell.data.gps.empty()) addGpsScores(figures, path, cell.data.gps, cell.data.antenna);
@@ -184,8 +180,10 @@ void mapLog(const Cell& cell, const Configuration& config, Metrics& figures) {
   std::vector<Frame> frames;
   if (!pipeline || (forms.grids && !cell.truth.empty()))
     frames = readFrames(cell.log, readerParams(config, forms));
+  TerminalReporter reporter(true);
   const Estimate estimate =
-      pipeline ? runPipeline(cell, config, false, figures) : runBaseline(cell, config, frames);
+      pipeline ? estimateOf(cell, mapRawlog(cell.log, cell.folder.string(), true, config, reporter), figures)
+               : runBaseline(cell, config, frames);
   const std::string submaps = pipeline && forms.landmarks ? (cell.folder / kLandmarkFile).string() : "";
   addScores(figures, cell, config, estimate, frames, submaps);
 }
@@ -194,7 +192,9 @@ void mapLog(const Cell& cell, const Configuration& config, Metrics& figures) {
 void joinLog(const Cell& cell, const Configuration& config, Metrics& figures) {
   if (!cell.setting.baseline.empty())
     throw InputError(fmt::format("{}: holds landmark submaps, of which there is no baseline", cell.log));
-  addScores(figures, cell, config, runPipeline(cell, config, true, figures), {}, cell.log);
+  TerminalReporter reporter(true);
+  const RunSummary run = joinLandmarkFile(cell.log, cell.folder.string(), true, config, reporter);
+  addScores(figures, cell, config, estimateOf(cell, run, figures), {}, cell.log);
 }
 
 void runCell(const Cell& cell, int threads) {

@@ -4,10 +4,12 @@
 #include <submap_slam/core/errors.h>
 #include <submap_slam/eval/gps_error.h>
 #include <submap_slam/eval/trajectory_error.h>
+#include <submap_slam/pipeline/run_files.h>
 #include <submap_slam/rawlog/landmark_log.h>
 
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 namespace submap_slam {
@@ -22,12 +24,6 @@ LandmarkMatch matchOf(const std::filesystem::path& associations) {
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   const std::string kind = fmt::format(",{},", toString(FeatureAssociation::Kind::kKnown));
   return text.find(kind) != std::string::npos ? LandmarkMatch::kById : LandmarkMatch::kByPosition;
-}
-
-/** Beside grids, frames.csv has theirs. */
-std::filesystem::path framesFile(const std::filesystem::path& folder) {
-  const auto beside_grids = folder / "landmark_frames.csv";
-  return std::filesystem::exists(beside_grids) ? beside_grids : folder / "frames.csv";
 }
 
 void setFrames(LandmarkScores& scores, std::vector<FrameError> frames) {
@@ -48,14 +44,22 @@ void setLandmarks(LandmarkScores& scores, const std::filesystem::path& folder, c
 
 }  // namespace
 
+MapForms formsOf(const std::filesystem::path& folder) {
+  std::ifstream in(folder / kMetricsFile);
+  const auto metrics = nlohmann::json::parse(in, nullptr, false);
+  return {!metrics.contains("landmarks"),
+          metrics.contains("landmarks") || metrics.contains("landmark_submaps")};
+}
+
 LandmarkScores landmarkScores(const std::filesystem::path& folder, const std::string& submaps,
-                              const TimedTrajectory& estimate, const TimedTrajectory& truth,
-                              const std::string& true_landmarks) {
-  const auto pairs = associate(truth, estimate);
+                              const TimedTrajectory& truth, const std::string& true_landmarks) {
+  const std::filesystem::path results = folder / (formsOf(folder).grids ? "landmark_" : "");
+  const auto file = [&](const char* name) { return results.string() + name; };
+  const auto pairs = associate(truth, readTum(file("trajectory.tum")));
   if (pairs.empty()) throw InputError("the truth has no time in common with the trajectory");
   const TPose2D T_truth_map = pairs.front().reference + (TPose2D() - pairs.front().estimate);
   LandmarkScores scores;
-  setFrames(scores, frameErrors(readTimedFrames(framesFile(folder).string()), truth, T_truth_map));
+  setFrames(scores, frameErrors(readTimedFrames(file("frames.csv")), truth, T_truth_map));
   if (true_landmarks.empty()) return scores;
   const LandmarkTruth landmarks = readLandmarkTruth(true_landmarks);
   setLandmarks(scores, folder, landmarks, T_truth_map);

@@ -4,6 +4,7 @@
 #include <submap_slam/eval/landmark_errors.h>
 #include <submap_slam/eval/submap_nees.h>
 #include <submap_slam/eval/timed_trajectory.h>
+#include <submap_slam/pipeline/map_forms.h>
 #include <submap_slam/pipeline/metrics.h>
 
 #include <filesystem>
@@ -25,16 +26,19 @@ struct LandmarkScores {
   SubmapNees local;                ///< of submaps in their own frames
 };
 
-/** Judges a result; the first pose of the estimate is taken to be the true one.
- * @param folder          a result with landmarks.csv, association.csv and frames.csv (beside grids:
- *                        landmark_frames.csv)
+/** The maps that the finished run in a folder made, by its metrics.json: other files may be left of an
+ * earlier run. */
+MapForms formsOf(const std::filesystem::path& folder);
+
+/** Judges a result; the first pose of its path is taken to be the true one.
+ * @param folder          a finished result of landmarks: landmarks.csv, association.csv, trajectory.tum and
+ *                        frames.csv (beside grids: landmark_trajectory.tum and landmark_frames.csv)
  * @param submaps         file of the landmark submaps; empty: without local NEES
  * @param true_landmarks  file with their true places, or empty
  *
  * Throws InputError for files that do not fit together. */
 LandmarkScores landmarkScores(const std::filesystem::path& folder, const std::string& submaps,
-                              const TimedTrajectory& estimate, const TimedTrajectory& truth,
-                              const std::string& true_landmarks);
+                              const TimedTrajectory& truth, const std::string& true_landmarks);
 
 /** Adds ci_frames and nees_frames, and where true landmarks are given, landmark_rmse_m, ci_landmarks,
  * nees_landmarks, landmarks_compared and nees_local. */

@@ -218,9 +218,19 @@ TEST_F(CliLandmarkMapping, GridsAndLandmarksOfTheSameSubmapsAgree) {
   EXPECT_GT(m["landmark_landmarks"], 20);
   EXPECT_LT(m["landmark_path_difference_m"], 0.1);
   EXPECT_LT(m["landmark_path_difference_deg"], 1.0);
+  // The path of the landmarks is judged, by its own files.
+  const std::string truth = path("out/landmark_trajectory.tum");
+  writeFile(path("out/trajectory.tum"), contentOf(log("loop.truth.tum")));  // begins elsewhere
+  const auto judged =
+      nlohmann::json::parse(succeed({"eval", path("out"), "--reference", truth, "--json"}).out)["landmarks"];
+  EXPECT_LT(judged["nees_frames"], 1e-3) << "its own path is the truth";
   // Without asking, the log is mapped by its laser.
   succeed({"build", path("both.rawlog"), "-o", path("s.rawlog"), "-q"});
   EXPECT_FALSE(std::filesystem::exists(path("s_landmarks.rawlog")));
+  succeed(map("both.rawlog", "out", {"--overwrite"}));
+  EXPECT_FALSE(nlohmann::json::parse(succeed({"eval", path("out"), "--reference", truth, "--json"}).out)
+                   .contains("landmarks"))
+      << "landmarks.csv is of the run before";
 }
 
 TEST_F(CliLandmarkMapping, SaysSoWhereThereIsNothingToMap) {
