@@ -112,6 +112,9 @@ ExperimentData readData(const ExperimentFile& file, const std::string& name, con
   file.at(heading, [&] {
     if (data.world.empty() == data.log.empty())
       throw ConfigError(fmt::format("[{}]: needs either a world or a log", section));
+    if (!data.landmarks.empty() && data.truth.empty())
+      throw ConfigError(
+          fmt::format("[{}]: landmarks needs truth, which tells where the map begins", section));
   });
   if (!data.world.empty()) checkSimulation(file, keys, data.world);
   std::vector<IniEntry> facts;

@@ -108,6 +108,14 @@ Json fixesJson(const std::vector<GpsFix>& fixes) {
   return {{"x", x}, {"y", y}};
 }
 
+/** What the figures of a pose are compared with where the covariances are honest. */
+Json expectedJson(bool index) {
+  if (index)
+    return {{"value", 1},
+            {"text", "a single pose is below 1 in 95 % of all cases if the covariances are honest"}};
+  return {{"value", 3}, {"text", "3 is expected"}};
+}
+
 }  // namespace
 
 Json timeCurves(const ExperimentPlot& plot, const std::vector<ExperimentRow>& rows) {
@@ -121,7 +129,7 @@ Json timeCurves(const ExperimentPlot& plot, const std::vector<ExperimentRow>& ro
                       {"values", index ? meansOf(cells, [](const FrameError& f) { return f.index; })
                                        : meansOf(cells, [](const FrameError& f) { return f.nees; })}});
   }
-  return curves;
+  return {{"curves", curves}, {"expected", expectedJson(index)}};
 }
 
 Json errorCurves(const Experiment& experiment, const ExperimentPlot& plot,

@@ -117,7 +117,7 @@ Json plotJson(const Experiment& experiment, const ExperimentPlot& plot,
   json["x"] = plot.x;
   json["y"] = axisJson(plot.y);
   if (plot.x == "time") {
-    json["curves"] = timeCurves(plot, rows);
+    json.update(timeCurves(plot, rows));
   } else if (plot.x == "seed") {
     json["places"] = seedsOf(experiment);
     json["series"] = seriesOverSeeds(plot, rows);

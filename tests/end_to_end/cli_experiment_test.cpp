@@ -217,6 +217,7 @@ TEST_F(LandmarkExperimentTest, PlotsCurvesErrorsAndPaths) {
   const Json plots = pageData()["plots"], row = pageData()["rows"][0];
   ASSERT_EQ(plots.size(), 3u);
   const Json& curve = plots[0]["curves"][0];
+  EXPECT_EQ(plots[0]["expected"]["value"], 1) << "of a consistency index";
   EXPECT_EQ(curve["label"], "drive, ids");
   const auto values = curve["values"].get<std::vector<double>>();
   ASSERT_GT(values.size(), 2u);
@@ -271,6 +272,9 @@ TEST_F(LandmarkExperimentTest, EvalPrintsTheSameOfAFolderAndWritesNothing) {
   for (const char* key : {"landmark_rmse_m", "ci_landmarks", "ci_frames", "nees_local"})
     EXPECT_EQ(judged[key], cell[key]) << key;
   EXPECT_EQ(contentsOf(folder), before);
+  for (const char* stale : {"/landmark_frames.csv", "/landmark_trajectory.tum"})
+    writeFile(folder + stale, "of an earlier run beside grids");
+  EXPECT_EQ(Json::parse(succeed(as_json).out)["landmarks"], judged);
   const std::string truth = log("landmarks.landmarks.csv"), tum = folder + "/trajectory.tum";
   expectRefused(run({"eval", tum, "--landmarks", truth, "--reference", tum}),
                 "expected the folder of a result");
@@ -351,6 +355,8 @@ TEST_F(ExperimentTest, RefusesBadDescriptions) {
           "did you mean [simulation] beams?");
   refuses(head + kChain + "[data hall]\ntruth = missing.tum\n", "missing.tum: no such file");
   refuses(head + kChain + "[data hall]\n", "needs either a world or a log");
+  refuses(head + kChain + "[data hall]\nlog = " + log("room.rawlog") + "\nlandmarks = bad.ini\n",
+          "[data hall]: landmarks needs truth");
   refuses(head + "seeds = one\n" + kData + kChain, "'one' is not a whole number");
   refuses(head + "seeds = 1, -1\n" + kData + kChain, "'-1' is not a whole number, 0 or more");
   refuses("[experiment]\ndata = hall\nsettings = chain\ncolumns = beauty\n" + std::string(kData) + kChain,

@@ -44,17 +44,16 @@ function spanDecades(curves) {
 
 function addTimePlot(plot) {
   const curves = plot.curves.filter((curve) => curve.t.length > 0), log = spanDecades(curves);
-  const expected = plot.y.label.startsWith('CI') ? { value: 1, text: 'below 1 in 95 % of all cases if the covariances are honest' } : { value: 3, text: '3 is expected' };
   const panel = addPanel(`plot-${plot.name}`, plot.title,
-    `Each pose where a submap ends, mean over the seeds; ${expected.text} (dashed).${log ? ' The scale is logarithmic.' : ''}`, true);
+    `Each pose where a submap ends, mean over the seeds; ${plot.expected.text} (dashed).${log ? ' The scale is logarithmic.' : ''}`, true);
   if (curves.length === 0) {
     noteMissing(panel);
     return;
   }
   const ends = [0, Math.max(...curves.map((curve) => curve.t[curve.t.length - 1]))];
-  const [x, ...columns] = uPlot.join([...curves.map((curve) => [curve.t, curve.values]), [ends, ends.map(() => expected.value)]]);
+  const [x, ...columns] = uPlot.join([...curves.map((curve) => [curve.t, curve.values]), [ends, ends.map(() => plot.expected.value)]]);
   const lines = curves.map((curve, k) => ({ label: curve.label, color: runColor(k), values: columns[k], points: needsPoints(curve.t) }));
-  lines.push({ label: String(expected.value), color: kChain, dash: [6, 4], values: columns[curves.length] });
+  lines.push({ label: String(plot.expected.value), color: kChain, dash: [6, 4], values: columns[curves.length] });
   addChart(panel, { x, xLabel: kTimeLabel, yLabel: plot.y.label, lines, log, nearest: true, height: 320 });
 }
 
