@@ -26,10 +26,16 @@
 namespace submap_slam {
 namespace {
 
-void checkResult(const LandmarkJoiner& joiner, const JoinedLandmarks& joined, std::size_t submaps) {
-  if (joined.frames.size() != submaps + 1)
+void checkResult(const LandmarkJoiner& joiner, const JoinedLandmarks& joined,
+                 const LandmarkSubmaps& submaps) {
+  std::size_t features = 0;
+  for (const auto& submap : submaps) features += submap->features.size();
+  if (joined.frames.size() != submaps.size() + 1)
     throw PluginError(fmt::format("joiner {}: gave {} frames for {} submaps, expected one more",
-                                  joiner.name(), joined.frames.size(), submaps));
+                                  joiner.name(), joined.frames.size(), submaps.size()));
+  if (joined.associations.size() != features)
+    throw PluginError(fmt::format("joiner {}: said of {} features what became of them, expected {}",
+                                  joiner.name(), joined.associations.size(), features));
   const bool finite = std::all_of(joined.frames.begin(), joined.frames.end(),
                                   [](const auto& f) {
                                     return std::isfinite(f.mean.x()) && std::isfinite(f.mean.y()) &&
@@ -70,28 +76,19 @@ void writeLandmarkResults(const OutputDirectory& out, const std::string& prefix,
   writeAssociations(out.file("association.csv"), joined.associations);
 }
 
+std::vector<mrpt::poses::CPose2D> endsOf(const JoinedLandmarks& joined) {
+  std::vector<mrpt::poses::CPose2D> ends;
+  for (std::size_t k = 0; k + 1 < joined.frames.size(); ++k)
+    ends.push_back(joined.frames[k + 1].mean - joined.frames[k].mean);
+  return ends;
+}
+
 /** m */
 double lengthOf(const Trajectory& path) {
   double length = 0;
   for (std::size_t k = 1; k < path.size(); ++k)
     length += std::hypot(path[k].pose.x - path[k - 1].pose.x, path[k].pose.y - path[k - 1].pose.y);
   return length;
-}
-
-/** How far the path of the landmarks is from that of the grids; warns where it is much of the way. */
-void comparePaths(const Trajectory& grid_path, const Trajectory& path, Metrics& metrics, Reporter& reporter) {
-  const auto pairs = associate(TimedTrajectory(grid_path), TimedTrajectory(path));
-  const TrajectoryError error = absoluteTrajectoryError(pairs);
-  metrics["landmark_path_difference_m"] = error.translation_m.rmse;
-  metrics["landmark_path_difference_deg"] = error.rotation_deg.rmse;
-  constexpr double kMuch = 0.01;
-  const std::string text =
-      fmt::format("the paths of grids and landmarks differ by {:.2f} m and {:.1f} deg (RMS)",
-                  error.translation_m.rmse, error.rotation_deg.rmse);
-  if (error.translation_m.rmse > kMuch * lengthOf(path))
-    reporter.warning(text + "; the map of one of them is bent");
-  else
-    reporter.log(text);
 }
 
 }  // namespace
@@ -116,7 +113,7 @@ JoinedLandmarks LandmarkHalf::join(const LandmarkSubmaps& submaps, bool& stopped
   show(0);
   JoinedLandmarks joined = at_work_->join(submaps, progress);
   show(1);
-  checkResult(joiner_, joined, submaps.size());
+  checkResult(joiner_, joined, submaps);
   return joined;
 }
 
@@ -141,8 +138,7 @@ void LandmarkHalf::update(std::size_t submaps_in_file, double fraction) {
                              submaps.size(), 100 * fraction, toString(joined.status), update_s));
 }
 
-FinishedMap LandmarkHalf::finish(const LandmarkSubmaps& submaps, const Trajectory& grid_path,
-                                 RunSummary& summary) {
+FinishedMap LandmarkHalf::finish(const LandmarkSubmaps& submaps, RunSummary& summary) {
   Metrics metrics;
   const StageTimer join_timer;
   reporter_.log(fmt::format("{} landmark submaps", submaps.size()));
@@ -161,10 +157,25 @@ FinishedMap LandmarkHalf::finish(const LandmarkSubmaps& submaps, const Trajector
   addTime(metrics, "write_", write_timer);
   addStage(summary.metrics, write_timer.record(prefix_ + "write"));
   for (const auto& [key, value] : metrics.items()) summary.metrics[prefix_ + key] = value;
-  if (!grid_path.empty()) comparePaths(grid_path, path, summary.metrics, reporter_);
+  if (!summary.failed) ends_ = endsOf(joined);
   return {std::move(path), [submaps, joined = std::move(joined)](const RunRecord& record) {
             return runReport(submaps, joined, record);
           }};
+}
+
+void comparePaths(const Trajectory& grid_path, const Trajectory& path, Metrics& metrics, Reporter& reporter) {
+  const auto pairs = associate(TimedTrajectory(grid_path), TimedTrajectory(path));
+  const TrajectoryError error = absoluteTrajectoryError(pairs);
+  metrics["landmark_path_difference_m"] = error.translation_m.rmse;
+  metrics["landmark_path_difference_deg"] = error.rotation_deg.rmse;
+  constexpr double kMuch = 0.01;
+  const std::string text =
+      fmt::format("the paths of grids and landmarks differ by {:.2f} m and {:.1f} deg (RMS)",
+                  error.translation_m.rmse, error.rotation_deg.rmse);
+  if (error.translation_m.rmse > kMuch * lengthOf(path))
+    reporter.warning(text + "; the map of one of them is bent");
+  else
+    reporter.log(text);
 }
 
 RunSummary joinLandmarkFile(const std::string& submap_file, const std::string& folder, bool overwrite,
@@ -178,7 +189,7 @@ RunSummary joinLandmarkFile(const std::string& submap_file, const std::string& f
   const OutputDirectory out(folder, overwrite);
   addTimedStage(summary.metrics, "read", timer);
   LandmarkHalf half(*joiner, out, false, config.joining.update_growth, reporter);
-  const FinishedMap map = half.finish(read.submaps, {}, summary);
+  const FinishedMap map = half.finish(read.submaps, summary);
   finishRun({submap_file, out, config, reporter, timer}, summary.metrics, map.report);
   return summary;
 }

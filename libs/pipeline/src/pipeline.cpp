@@ -126,13 +126,22 @@ class GridHalf {
 
   MapUpdates& updates() { return updates_; }
 
-  FinishedMap finish(RunSummary& summary) {
+  /** @param ends T_s_end of all submaps, if they are known better than by the submaps themselves */
+  FinishedMap finish(RunSummary& summary, const std::vector<mrpt::poses::CPose2D>& ends) {
     submaps_.add(follower_.readNew());
     requireSubmaps(run_.out.file(kSubmapFile));
+    if (!ends.empty()) setEnds(ends);
     return joinAndWrite(run_, submaps_, joining_, *store_, summary);
   }
 
  private:
+  void setEnds(const std::vector<mrpt::poses::CPose2D>& ends) {
+    for (const auto* submaps : {&submaps_.all(), &submaps_.shown()})
+      for (const auto& submap : *submaps)
+        if (submap->has_successor) submap->end_pose.mean = ends.at(submap->id);
+    joining_.begin();
+  }
+
   const Run& run_;
   Joining& joining_;
   std::shared_ptr<SubmapStore> store_;
@@ -195,12 +204,17 @@ RunSummary mapRawlog(const std::string& log, const std::string& folder, bool ove
 
   addLogMetrics(summary.metrics, source.report());
   FinishedMap map;
-  if (grids) map = grids->finish(summary);
-  if (landmarks && !summary.interrupted) {
+  std::vector<mrpt::poses::CPose2D> ends;
+  if (landmarks) {
     const LandmarkSubmaps submaps = readLandmarkSubmaps(out.file(kLandmarkFile));
     requireFeatures(submaps);
-    FinishedMap of_landmarks = landmarks->finish(submaps, map.path, summary);
-    if (!grids) map = std::move(of_landmarks);
+    map = landmarks->finish(submaps, summary);
+    ends = landmarks->ends();
+  }
+  if (grids && !summary.interrupted) {
+    FinishedMap of_grids = grids->finish(summary, ends);
+    if (landmarks) comparePaths(of_grids.path, map.path, summary.metrics, reporter);
+    map = std::move(of_grids);
   }
   finishRun(run, summary.metrics, map.report);
   return summary;

@@ -1,5 +1,6 @@
 #include <submap_slam/pipeline/submap_building.h>
 
+#include <submap_slam/core/errors.h>
 #include <submap_slam/mapping/grid_mapper.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_pipeline.h>
@@ -26,9 +27,18 @@ void number(const SubmapLogWriter& writer, const Submaps& submaps) {
   for (const auto& submap : submaps) submap->id = id++;
 }
 
+/** Odometry of the log for the nodes of the submaps of a stretch. */
+void setOdometry(const GridSubmaps& submaps, const Stretch& stretch) {
+  auto frame = stretch.frames.begin() + static_cast<std::ptrdiff_t>(stretch.warm_up);
+  for (const auto& submap : submaps)
+    for (SubmapNode& node : submap->nodes) node.odometry = (frame++)->odometry;
+}
+
 }  // namespace
 
 StretchMapper::StretchMapper(const Configuration& config, const MapForms& forms) {
+  if (forms.grids && forms.landmarks && config.landmark_mapper.single_map)
+    throw ConfigError("[landmark_mapper] single_map: grids beside landmarks need submaps");
   if (forms.grids) grids_ = makeGridMapper(config.mapper, config.seed);
   if (forms.landmarks) landmarks_.emplace(config.landmark_mapper, config.seed);
 }
@@ -37,6 +47,7 @@ StretchSubmaps StretchMapper::map(const Stretch& stretch) const {
   if (!grids_) return {{}, landmarks_->map(stretch)};
   if (!landmarks_) return {grids_->map(stretch), {}};
   StretchSubmaps both{grids_->map(landmarks_->withCorrectedOdometry(stretch)), {}};
+  setOdometry(both.grids, stretch);
   both.landmarks = landmarks_->mapBeside(both.grids, stretch);
   return both;
 }

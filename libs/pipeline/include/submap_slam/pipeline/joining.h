@@ -40,13 +40,15 @@ class Joining {
   JoinOutcome join(const GridSubmaps& submaps, Reporter& reporter,
                    const std::vector<Constraint>& by_hand = {});
 
+  /** The next call of join() begins anew: to be called when submaps were changed. */
+  void begin();
+
   /** Runs the last joiner on other submaps of the same number, from `initial`, and makes the global map. */
   JoinOutcome joinAgain(const GridSubmaps& submaps, JoinedMap initial, Reporter& reporter) const;
 
   const JoinerChain& joiners() const { return joiners_; }
 
  private:
-  void begin();
   JoinOutcome goOn(const GridSubmaps& submaps, Reporter& reporter, const std::vector<Constraint>& by_hand);
 
   JoinerChain joiners_;

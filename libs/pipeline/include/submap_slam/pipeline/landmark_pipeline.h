@@ -31,10 +31,11 @@ class LandmarkHalf {
    * replaces map.png, trajectory.tum and landmarks.csv; updates.csv gets a line. */
   void update(std::size_t submaps_in_file, double fraction);
 
-  /** Joins and writes everything but the record of the run.
-   * @param grid_path where there are grids: `landmark_path_difference_…` says how the landmarks' path differs
-   */
-  FinishedMap finish(const LandmarkSubmaps& submaps, const Trajectory& grid_path, RunSummary& summary);
+  /** Joins and writes everything but the record of the run. */
+  FinishedMap finish(const LandmarkSubmaps& submaps, RunSummary& summary);
+
+  /** After finish(): T_s_end of each submap, as all joined landmarks have it; none if joining failed. */
+  const std::vector<mrpt::poses::CPose2D>& ends() const { return ends_; }
 
   /** How many submaps the latest map has; 0: there is none. */
   std::size_t submapsInMap() const { return in_map_; }
@@ -50,6 +51,12 @@ class LandmarkHalf {
   Reporter& reporter_;
   std::string table_;  // content of updates.csv
   std::size_t in_map_ = 0;
+  std::vector<mrpt::poses::CPose2D> ends_;
 };
+
+/** Says how far the path of the landmarks is from that of the grids, as `landmark_path_difference_…` too, and
+ * warns where it is much of the way. */
+void comparePaths(const Trajectory& grid_path, const Trajectory& landmark_path, Metrics& metrics,
+                  Reporter& reporter);
 
 }  // namespace submap_slam
