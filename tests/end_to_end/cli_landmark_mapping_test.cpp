@@ -8,6 +8,7 @@
 #include <mrpt/serialization/CArchive.h>
 #include <submap_slam/core/landmark_submap.h>
 #include <submap_slam/rawlog/landmark_log.h>
+#include <submap_slam/rawlog/submap_log.h>
 
 #include <cmath>
 #include <filesystem>
@@ -203,6 +204,14 @@ void addLandmarks(const std::string& log, const std::string& truth, const std::s
   }
 }
 
+std::vector<TPose2D> odometryOf(const std::string& submap_file) {
+  std::vector<TPose2D> odometry;
+  SubmapLogReader reader(submap_file);
+  while (const auto submap = reader.next())
+    for (const SubmapNode& node : submap->nodes) odometry.push_back(node.odometry.value());
+  return odometry;
+}
+
 TEST_F(CliLandmarkMapping, GridsAndLandmarksOfTheSameSubmapsAgree) {
   addLandmarks(log("loop.rawlog"), log("loop.truth.tum"), path("both.rawlog"));
   succeed(map("both.rawlog", "out", {"--set", "mapping.maps=grid, landmarks"}));
@@ -218,6 +227,9 @@ TEST_F(CliLandmarkMapping, GridsAndLandmarksOfTheSameSubmapsAgree) {
   EXPECT_GT(m["landmark_landmarks"], 20);
   EXPECT_LT(m["landmark_path_difference_m"], 0.1);
   EXPECT_LT(m["landmark_path_difference_deg"], 1.0);
+  // Joiners of grids see the odometry of the log, not what landmarks made of it.
+  succeed(map("both.rawlog", "grids", {"--set", "mapping.maps=grid"}));
+  EXPECT_EQ(odometryOf(path("out/submaps.rawlog")), odometryOf(path("grids/submaps.rawlog")));
   // The path of the landmarks is judged, by its own files.
   const std::string truth = path("out/landmark_trajectory.tum");
   writeFile(path("out/trajectory.tum"), contentOf(log("loop.truth.tum")));  // begins elsewhere
