@@ -28,10 +28,11 @@ std::vector<std::string> splitList(std::string text) {
 void describeSubmapParameters(ParameterTable& table, Configuration& config) {
   describe(table, config.reader);
   table.section("mapping", "Which submaps are built from a log");
-  table.add("maps", config.maps,
-            "Occupancy grids, landmarks, or both in the same submaps; auto: grids where the log has laser scans, "
-            "else landmarks",
-            {"auto", "grid", "landmarks", "grid, landmarks"});
+  table.add(
+      "maps", config.maps,
+      "Occupancy grids, landmarks, or both in the same submaps; auto: grids where the log has laser scans, "
+      "else landmarks",
+      {"auto", "grid", "landmarks", "grid, landmarks"});
   describe(table, config.stretches);
   describe(table, config.mapper);
   describe(table, config.detector);

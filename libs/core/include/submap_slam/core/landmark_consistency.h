@@ -15,8 +15,8 @@ struct Misfit {
   double distance2 = 0;  ///< squared Mahalanobis distance by the feature's covariance in its submap
 };
 
-/** The feature that fits worst; nothing if no submap has any. Requires of `joined` a frame for each submap and
- * an association for each feature, those of the submaps one behind the other. */
+/** The feature that fits worst; nothing if no submap has any. Requires of `joined` a frame for each submap
+ * and an association for each feature, those of the submaps one behind the other. */
 std::optional<Misfit> worstMisfit(const LandmarkSubmaps& submaps, const JoinedLandmarks& joined);
 
 /** Says so where submaps do not fit together, and which feature fits worst: the objective is then far above
