@@ -125,8 +125,8 @@ void addInfoCommand(CLI::App& app, int& exit_code) {
   command->add_flag("--overwrite", options->overwrite, "Replace the text file if it exists");
   command->footer(
       "Overlap: share of the cells that another submap saw too, in the chain of end poses.\n"
-      "Examples: submap-slam info intel/submaps.rawlog\n"
-      "          submap-slam info park/landmark_submaps.rawlog --text park.txt.gz");
+      "Example: submap-slam info intel/submaps.rawlog\n"
+      "         submap-slam info park/landmark_submaps.rawlog --text park.txt.gz");
   command->callback([options, &exit_code] { exit_code = runInfo(*options); });
 }
 

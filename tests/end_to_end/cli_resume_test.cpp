@@ -105,8 +105,8 @@ TEST_F(ResumeTest, ASecondStopSignalEndsAtOnce) {
   const Outcome outcome = process.wait();
   EXPECT_EQ(outcome.exit_code, 130);
   EXPECT_THAT(outcome.err, Not(HasSubstr("give the same command again"))) << "it ended in its own time";
+  succeed(arguments);  // even if the very first submap was half written
   succeed({"info", path("s.rawlog")});
-  succeed(arguments);
 }
 
 TEST_F(ResumeTest, AStopSignalDuringWritingChangesNothing) {
