@@ -49,7 +49,7 @@ TEST_F(RunFolderTest, ReadsLandmarks) {
   EXPECT_EQ(read.landmarks[0].x, 1.5);
   EXPECT_EQ(read.landmarks[0].y, -2);
   folder.write("run/landmarks.csv", "id,x,y\nthree\n");
-  expectRefused(folder.file("run"), "landmarks.csv:2: expected id,x,y");
+  expectRefused(folder.file("run"), "landmarks.csv:1: expected the head id,x,y");
 }
 
 TEST_F(RunFolderTest, WhatIsNoRunIsRefused) {

@@ -86,21 +86,6 @@ std::vector<mrpt::poses::CPosePDFGaussian> readFrames(const std::string& file) {
   return frames;
 }
 
-std::vector<JoinedLandmark> readLandmarks(const std::string& file) {
-  std::vector<JoinedLandmark> landmarks;
-  forEachRow(file, [&landmarks](Row& row) {
-    JoinedLandmark l;
-    l.id = row.id();
-    l.x = row.number();
-    l.y = row.number();
-    for (int i = 0; i < 2; ++i)
-      for (int j = i; j < 2; ++j) l.covariance(i, j) = l.covariance(j, i) = row.number();
-    l.hits = row.id();
-    landmarks.push_back(l);
-  });
-  return landmarks;
-}
-
 std::vector<Constraint> readConstraints(const std::string& file) {
   std::vector<Constraint> constraints;
   forEachRow(file, [&constraints](Row& row) {

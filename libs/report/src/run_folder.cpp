@@ -1,9 +1,9 @@
 #include <mrpt/io/CFileGZInputStream.h>
 #include <mrpt/serialization/CArchive.h>
 #include <submap_slam/core/errors.h>
+#include <submap_slam/eval/landmark_errors.h>
 #include <submap_slam/report/run_folder.h>
 
-#include <cstdio>
 #include <fstream>
 
 namespace submap_slam {
@@ -39,20 +39,6 @@ mrpt::maps::COccupancyGridMap2D readGridMap(const fs::path& file) {
   }
 }
 
-std::vector<mrpt::math::TPoint2D> readLandmarks(const fs::path& file) {
-  std::ifstream in(file);
-  std::vector<mrpt::math::TPoint2D> landmarks;
-  std::string line;
-  std::getline(in, line);  // heading
-  for (std::size_t number = 2; std::getline(in, line); ++number) {
-    mrpt::math::TPoint2D p;
-    if (std::sscanf(line.c_str(), "%*u,%lf,%lf", &p.x, &p.y) != 2)
-      throw InputError(file.string() + ":" + std::to_string(number) + ": expected id,x,y,…");
-    landmarks.push_back(p);
-  }
-  return landmarks;
-}
-
 }  // namespace
 
 RunFolder readRunFolder(const fs::path& folder) {
@@ -63,7 +49,9 @@ RunFolder readRunFolder(const fs::path& folder) {
   run.settings = readIni((folder / "config.ini").string());
   run.trajectory = readTum((folder / "trajectory.tum").string());
   if (fs::exists(folder / "map.gridmap.gz")) run.map = readGridMap(folder / "map.gridmap.gz");
-  if (fs::exists(folder / "landmarks.csv")) run.landmarks = readLandmarks(folder / "landmarks.csv");
+  if (fs::exists(folder / "landmarks.csv"))
+    for (const auto& l : readMappedLandmarks((folder / "landmarks.csv").string()))
+      run.landmarks.emplace_back(l.x, l.y);
   return run;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <submap_slam/core/errors.h>
+#include <submap_slam/eval/landmark_errors.h>
 #include <submap_slam/output/run_tables.h>
 #include <submap_slam/pipeline/run_files.h>
 #include <submap_slam/rawlog/landmark_log.h>
@@ -49,7 +50,7 @@ std::string readJoinedLandmarks(ViewerModel& model, const std::string& folder) {
     return fmt::format("{}: holds {} frames, expected those of {} submaps, which are shown as a chain", file,
                        joined.frames.size(), submaps);
   joined.frames.insert(joined.frames.begin(), mrpt::poses::CPosePDFGaussian());
-  joined.landmarks = readLandmarks(inFolder(folder, "landmarks.csv"));
+  joined.landmarks = readMappedLandmarks(inFolder(folder, "landmarks.csv"));
   model.setJoinedLandmarks(std::move(joined));
   return {};
 }

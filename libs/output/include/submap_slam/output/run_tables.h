@@ -2,7 +2,6 @@
 #pragma once
 
 #include <mrpt/poses/CPosePDFGaussian.h>
-#include <submap_slam/core/joined_landmarks.h>
 #include <submap_slam/core/joined_map.h>
 
 #include <string>
@@ -19,9 +18,6 @@ void writeFrames(const std::string& file, const std::vector<mrpt::poses::CPosePD
 
 /** Reads what writeFrames wrote, of grid or of landmark submaps. Throws InputError naming file and line. */
 std::vector<mrpt::poses::CPosePDFGaussian> readFrames(const std::string& file);
-
-/** Reads what writeLandmarks wrote. Throws InputError naming file and line. */
-std::vector<JoinedLandmark> readLandmarks(const std::string& file);
 
 /** Reads what writeConstraints wrote: of the covariance only the standard deviations are there. Throws
  * InputError naming file and line. */
