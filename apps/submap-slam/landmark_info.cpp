@@ -1,10 +1,12 @@
 #include "landmark_info.h"
 
 #include <fmt/format.h>
+#include <submap_slam/core/path_length.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <vector>
 
 namespace submap_slam {
 namespace {
@@ -17,15 +19,11 @@ struct Totals {
   std::set<uint32_t> ids;
 };
 
-/** Length of the path from the start to the end pose (m). */
+/** From the start to the end pose (m). */
 double pathLength(const LandmarkSubmap& submap) {
-  double length = 0;
-  mrpt::math::TPose2D last(0, 0, 0);
-  for (const LandmarkNode& node : submap.nodes) {
-    length += std::hypot(node.pose.x - last.x, node.pose.y - last.y);
-    last = node.pose;
-  }
-  return length + std::hypot(submap.end_pose.x - last.x, submap.end_pose.y - last.y);
+  std::vector<LandmarkNode> path = submap.nodes;
+  path.push_back({submap.end_stamp, submap.end_pose});
+  return submap_slam::pathLength(path);
 }
 
 /** Without poses only start and end are known. */

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <mrpt/math/wrap2pi.h>
 #include <submap_slam/core/errors.h>
+#include <submap_slam/core/path_length.h>
 #include <submap_slam/core/vehicle_model.h>
 #include <submap_slam/simulation/scenario.h>
 
@@ -23,13 +24,6 @@ Scenario withoutNoise(Scenario scenario) {
   scenario.landmark_sensor.sigma_range = scenario.landmark_sensor.sigma_bearing = 0;
   scenario.control.sigma_velocity = scenario.control.sigma_steering = 0;
   return scenario;
-}
-
-double pathLength(const Trajectory& truth) {
-  double length = 0;
-  for (std::size_t k = 1; k < truth.size(); ++k)
-    length += std::hypot(truth[k].pose.x - truth[k - 1].pose.x, truth[k].pose.y - truth[k - 1].pose.y);
-  return length;
 }
 
 TEST(Landmarks, WorldsAreThoseOfThePaper) {

@@ -8,6 +8,7 @@
 #include <mrpt/poses/CPose3D.h>
 #include <mrpt/serialization/CArchive.h>
 #include <mrpt/serialization/stl_serialization.h>
+#include <submap_slam/core/path_length.h>
 
 #include <algorithm>
 #include <cmath>
@@ -184,12 +185,7 @@ double GridSubmap::radius() const {
   return std::sqrt(r2);
 }
 
-double GridSubmap::pathLength() const {
-  double length = 0;
-  for (std::size_t i = 1; i < nodes.size(); ++i)
-    length += std::hypot(nodes[i].pose.x - nodes[i - 1].pose.x, nodes[i].pose.y - nodes[i - 1].pose.y);
-  return length;
-}
+double GridSubmap::pathLength() const { return submap_slam::pathLength(nodes); }
 
 std::size_t GridSubmap::keyNodes() const {
   return static_cast<std::size_t>(

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <submap_slam/core/errors.h>
 #include <submap_slam/core/landmark_consistency.h>
+#include <submap_slam/core/path_length.h>
 #include <submap_slam/eval/trajectory_error.h>
 #include <submap_slam/output/json_file.h>
 #include <submap_slam/output/landmark_files.h>
@@ -81,14 +82,6 @@ std::vector<mrpt::poses::CPose2D> endsOf(const JoinedLandmarks& joined) {
   for (std::size_t k = 0; k + 1 < joined.frames.size(); ++k)
     ends.push_back(joined.frames[k + 1].mean - joined.frames[k].mean);
   return ends;
-}
-
-/** m */
-double lengthOf(const Trajectory& path) {
-  double length = 0;
-  for (std::size_t k = 1; k < path.size(); ++k)
-    length += std::hypot(path[k].pose.x - path[k - 1].pose.x, path[k].pose.y - path[k - 1].pose.y);
-  return length;
 }
 
 }  // namespace
@@ -172,7 +165,7 @@ void comparePaths(const Trajectory& grid_path, const Trajectory& path, Metrics& 
   const std::string text =
       fmt::format("the paths of grids and landmarks differ by {:.2f} m and {:.1f} deg (RMS)",
                   error.translation_m.rmse, error.rotation_deg.rmse);
-  if (error.translation_m.rmse > kMuch * lengthOf(path))
+  if (error.translation_m.rmse > kMuch * pathLength(path))
     reporter.warning(text + "; the map of one of them is bent");
   else
     reporter.log(text);
