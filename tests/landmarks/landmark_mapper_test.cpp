@@ -174,6 +174,9 @@ TEST(LandmarkMapper, InventsNoOdometry) {
   const Stretch corrected = LandmarkMapper({}, 1).withCorrectedOdometry(drive.stretch);
   for (std::size_t i = 0; i < corrected.frames.size(); ++i)
     EXPECT_EQ(corrected.frames[i].odometry.has_value(), i != 10);
+  for (Frame& frame : drive.stretch.frames) frame.odometry.reset();
+  for (const Frame& frame : LandmarkMapper({}, 1).withCorrectedOdometry(drive.stretch).frames)
+    EXPECT_FALSE(frame.odometry);
 }
 
 TEST(LandmarkMapper, RefusesGatesThatContradict) {

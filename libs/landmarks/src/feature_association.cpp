@@ -9,14 +9,15 @@ namespace submap_slam::landmark_mapping {
 
 std::vector<Origin> unrivalled(std::size_t measurements, const std::vector<Pairing>& pairings,
                                double match_gate) {
-  std::vector<Origin> origins(measurements);
+  std::vector<int> of_measurement(measurements), of_feature;
   for (const Pairing& p : pairings) {
-    const auto touches = [&p](const Pairing& q) {
-      return q.measurement == p.measurement || q.feature == p.feature;
-    };
-    if (p.distance2 <= match_gate && std::count_if(pairings.begin(), pairings.end(), touches) == 1)
-      origins[p.measurement] = {Origin::Kind::kFeature, p.feature};
+    if (p.feature >= of_feature.size()) of_feature.resize(p.feature + 1);
+    ++of_measurement[p.measurement], ++of_feature[p.feature];
   }
+  std::vector<Origin> origins(measurements);
+  for (const Pairing& p : pairings)
+    if (p.distance2 <= match_gate && of_measurement[p.measurement] == 1 && of_feature[p.feature] == 1)
+      origins[p.measurement] = {Origin::Kind::kFeature, p.feature};
   return origins;
 }
 

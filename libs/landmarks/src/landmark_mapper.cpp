@@ -134,6 +134,8 @@ LandmarkSubmaps LandmarkMapper::map(const Stretch& stretch) const {
 }
 
 Stretch LandmarkMapper::withCorrectedOdometry(const Stretch& stretch) const {
+  const auto hasOdometry = [](const Frame& frame) { return frame.odometry.has_value(); };
+  if (std::none_of(stretch.frames.begin(), stretch.frames.end(), hasOdometry)) return stretch;
   Stretch corrected = stretch;
   corrected.warm_up = 0;
   std::vector<TPose2D> path;  // T_odom_robot of all frames, the first at the origin
