@@ -245,6 +245,23 @@ TEST_F(CliLandmarkMapping, GridsAndLandmarksOfTheSameSubmapsAgree) {
       << "landmarks.csv is of the run before";
 }
 
+TEST_F(CliLandmarkMapping, WarnsWhereGridsAndLandmarksGoDifferentWays) {
+  addLandmarks(log("loop.rawlog"), log("loop.truth.tum"), path("both.rawlog"));
+  writeFile(path("edits.txt"), "fix 3 0 20 0");  // bends the grids alone
+  const auto outcome = succeed(
+      map("both.rawlog", "out", {"--set", "mapping.maps=grid, landmarks", "--edits", path("edits.txt")}));
+  EXPECT_THAT(outcome.err, HasSubstr("warning: the paths of grids and landmarks differ by "));
+  EXPECT_GT(metrics("out")["landmark_path_difference_m"], 1);
+}
+
+TEST_F(CliLandmarkMapping, ASingleMapBesideGridsIsRefused) {
+  addLandmarks(log("loop.rawlog"), log("loop.truth.tum"), path("both.rawlog"));
+  expectRefused(
+      run(map("both.rawlog", "out",
+              {"--set", "mapping.maps=grid, landmarks", "--set", "landmark_mapper.single_map=true"})),
+      "single_map: grids beside landmarks need submaps");
+}
+
 TEST_F(CliLandmarkMapping, SaysSoWhereThereIsNothingToMap) {
   const auto outcome = run(map("nothing.rawlog", "out", {"--set", "mapping.maps=landmarks"}));
   EXPECT_EQ(outcome.exit_code, 2);
